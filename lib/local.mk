@@ -74,6 +74,8 @@ libnevh_core_la_SOURCES = \
 	lib/expression/timing_parts_private.h \
 	lib/expression/timing_parts.c \
 	lib/expression/timing.c \
+	lib/expression/timing_ask.c \
+	lib/expression/timing_stretch_private.h \
 	lib/expression/tape_open.c \
 	lib/expression/tape_gradient.c \
 	lib/expression/tape_complex.c \
@@ -200,6 +202,8 @@ libnevh_core_la_SOURCES = \
 	lib/run/section_level.c \
 	lib/diagnose/energy_private.h \
 	lib/diagnose/energy.c \
+	lib/diagnose/energy_book.c \
+	lib/diagnose/energy_book_private.h \
 	lib/diagnose/energy_scale.c \
 	lib/diagnose/passage_private.h \
 	lib/diagnose/passage.c \

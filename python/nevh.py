@@ -119,7 +119,8 @@ class _Energy(c.Structure):
         "last_fifth").split()] + [("verdict", c.c_int), ("theory", c.c_int)] +
         [(name, c.c_double) for name in "span limit met rounding gradient".split()] +
         [("rate", c.c_double * 3), ("early", c.c_double), ("least", c.c_double),
-         ("gone", c.c_bool), ("grown", c.c_double), ("relative", c.c_double * 2)])
+         ("gone", c.c_bool), ("grown", c.c_double), ("relative", c.c_double * 2),
+         ("missed", c.c_double)])
 
 
 class _JudgedRun(c.Structure):

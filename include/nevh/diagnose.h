@@ -37,8 +37,9 @@ NEVH_API int nevh_energy_follow(nevh_energy *, const nevh_stepper *stepper);
 
 /* Jumps of H in time are energy from outside, too: between two observations the
    difference of H after a jump and before it is booked, at the state between
-   the two.  Of one orbit, observed after each step, before the first
-   observation.
+   the two.  Where a term changes within half a step, or faster, the integral of
+   dH/dt over that step is taken in the same way, in place of what the stepper
+   says.  Of one orbit, observed after each step, before the first observation.
    timing   borrowed, until the last observation; NULL: none
    returns  NEVH_OK; NEVH_EINVAL when the observer is of more orbits */
 NEVH_API int nevh_energy_book(nevh_energy *, const nevh_timing *timing);
@@ -131,6 +132,9 @@ typedef struct {
                         the first fifth */
     double relative[2]; /* largest |error| in the first and in the last fifth,
                            over the energies met by then */
+    double missed; /* changes of the error in steps that pass over a change of H
+                      in time and are wrong about the energy from outside by as
+                      much: their sum, of one orbit, with nevh_energy_book */
 } nevh_energy_report;
 
 /* The verdict on a run, from the report on it, or on a run of the same steps
@@ -153,12 +157,18 @@ typedef struct {
                  bring), RANDOM_WALK where growth is slower and lasts
    NONE          BOUNDED as for OPEN, DRIFTS along a line, else RANDOM_WALK, of
                  the run as it is
-   UNDECIDED     otherwise: a longer run may tell; also before the first step,
+   UNDECIDED     where half of the largest error was made so, unless BOUNDED: steps that pass over changes of H are
+                 no measure of the scheme (nevh_energy_passes_over);
+                 and otherwise: a longer run may tell; also before the first step,
                  and of a report without samples
 
    Thread-safe. */
 NEVH_API nevh_verdict nevh_energy_verdict(const nevh_energy_report *,
                                           double times);
+
+/* Whether errors are those of steps that pass over changes of H in time, rather
+   than of the scheme; false for NULL.  Thread-safe. */
+NEVH_API bool nevh_energy_passes_over(const nevh_energy_report *);
 
 /* About how many seconds of a processor of 2020 that many evaluations of formulas
    and steps take, by a model: what is decided by it is decided alike on all

@@ -1,6 +1,7 @@
 /* nevh: the energy observer.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/field_private.h"
+#include "diagnose/energy_book_private.h"
 #include "diagnose/energy_private.h"
 #include "diagnose/passage_private.h"
 #include "diagnose/trend_private.h"
@@ -39,10 +40,11 @@ struct nevh_energy {
     size_t *steps, *next_look; /* width */
     bool *started;             /* width */
     double *effects;
-    double *state;             /* 2n: one lane */
-    const nevh_timing *timing; /* NULL: no jumps are booked */
-    nevh__passage passage;     /* of one lane */
-    double booked;             /* what jumps brought in, one lane */
+    double *state;         /* 2n: one lane */
+    double *booking;       /* 3n: of the book */
+    nevh__passage passage; /* of one lane */
+    nevh__book book;       /* likewise */
+    double missed;         /* as in the report, in energies */
     double sudden; /* the largest change of the error in one step, one lane */
     nevh__trend *trend;
     nevh__report report;
@@ -77,12 +79,13 @@ static int plan(nevh_energy *e, const nevh_system *s, bool portable) {
     e->started = nevh__array(width, sizeof *e->started);
     e->effects = nevh__array(s->n_effects, sizeof *e->effects);
     e->state = nevh__array(2 * s->n, sizeof *e->state);
+    e->booking = nevh__array(3 * s->n, sizeof *e->booking);
     if (width == 1 && !nevh__passage_init(&e->passage, s))
         return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
     if (e->t && e->h && e->initial && e->gained && e->scale && e->limit &&
         e->largest && e->seen && e->noise && e->blur && e->trend && e->steps &&
         e->start && e->start_t && e->typical && e->next_look && e->started &&
-        e->effects && e->state)
+        e->effects && e->state && e->booking)
         return NEVH_OK;
     return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
 }
@@ -122,6 +125,7 @@ void nevh_energy_free(nevh_energy *e) {
     free(e->started);
     free(e->effects);
     free(e->state);
+    free(e->booking);
     nevh__passage_clear(&e->passage);
     free(e);
 }
@@ -351,7 +355,11 @@ int nevh_energy_book(nevh_energy *e, const nevh_timing *timing) {
         return nevh__fail(&e->report, NEVH_EINVAL,
                           "jumps in time are booked of one orbit, not of %zu",
                           e->width);
-    e->timing = timing;
+    size_t n = e->n;
+    e->book = (nevh__book){
+        .field = e->field, .timing = timing, .n = n, .state = e->booking};
+    e->book.friction =
+        nevh_system_friction(e->field->system, e->booking + 2 * n);
     return NEVH_OK;
 }
 
@@ -362,80 +370,47 @@ double nevh_energy_passed(const nevh_energy *e, const char **effect) {
     return any ? e->passage.at : NAN;
 }
 
-/* By how much H changes at a break after the last state. */
-static double jump(nevh_energy *e, const nevh_time_break *b, double t,
-                   const double q[], const double p[]) {
-    const double *from = e->passage.before;
-    size_t n = e->n;
-    double since = b->before - from[2 * n], h[2] = {NAN, NAN};
-    double start = from[2 * n], at[2] = {b->before, b->after};
-    if (e->trend->samples == 1 && b->before < start && start < b->after)
-        at[t > start ? 0 : 1] = start; /* the value at the start is H0's */
-    for (size_t k = 0; k < 2 * n; k++) {
-        double to = k < n ? q[k] : p[k - n];
-        e->state[k] = from[k] + (to - from[k]) * since / (t - from[2 * n]);
-    }
-    const double *z = e->state;
-    if (nevh_field_value(e->field, 1, &at[0], z, z + n, &h[0]) ||
-        nevh_field_value(e->field, 1, &at[1], z, z + n, &h[1]))
-        return 0;
-    return h[1] - h[0];
+/* What the error would be, were it the last one. */
+static double error_now(const nevh_energy *e, size_t lane) {
+    double came = gain(e, lane) - e->gained[lane] + e->book.booked;
+    return (e->h[lane] - e->initial[lane] - came) / e->scale[lane];
 }
 
-/* All jumps that a step passes. */
-static void book_jumps(nevh_energy *e, double t, const double q[],
-                       const double p[]) {
-    double from = e->passage.before[2 * e->n];
-    bool forward = t > from;
-    const nevh_time_break *b = nevh__timing_next(e->timing, from, forward);
-    for (; b && (forward ? b->after <= t : b->before >= t);
-         b = nevh__timing_next(e->timing, forward ? b->after : b->before,
-                               forward)) {
-        if (b->jump && e->followed)
-            e->booked += forward ? jump(e, b, t, q, p) : -jump(e, b, t, q, p);
-    }
-}
-
-/* At a break itself H is neither what it was nor what it will be: the value is
-   that before it. */
-static void stay_before(nevh_energy *e, double t, const double q[],
-                        const double p[]) {
-    double from = e->passage.before[2 * e->n];
-    bool forward = t > from;
-    const nevh_time_break *b = nevh__timing_next(e->timing, t, true);
-    if (b && b->jump && b->before < t && t < b->after)
-        nevh_field_value(e->field, 1, forward ? &b->before : &b->after, q, p,
-                         &e->h[0]);
+/* The energy from outside in the step from the last state to this one. */
+static void book(nevh_energy *e, double t, const double q[], const double p[]) {
+    double before = e->trend->last;
+    double wrong = nevh__book_step(&e->book, e->passage.before,
+                                   e->trend->samples == 1, t, q, p, gain(e, 0));
+    double change = fabs(error_now(e, 0) - before);
+    e->missed += fmin(wrong, change * e->scale[0]);
 }
 
 /* Of one orbit: what lies between the last state and this one. */
 static void look_back(nevh_energy *e, double t, const double q[],
                       const double p[]) {
     static const double large = 1e-3; /* of the scale */
-    double before = e->trend->last;
-    if (e->trend->samples && e->timing)
-        stay_before(e, t, q, p);
-    double after =
-        (e->h[0] - e->initial[0] - gain(e, 0) + e->gained[0] - e->booked) /
-        e->scale[0];
-    if (e->trend->samples && e->timing)
-        book_jumps(e, t, q, p);
-    double change = fabs(after - before);
-    if (e->trend->samples && (!(change <= large) || change > 2 * e->sudden))
+    bool first = e->trend->samples == 0;
+    if (!first)
+        nevh__book_value(&e->book, e->passage.before[2 * e->n], t, q, p,
+                         &e->h[0]);
+    double change = fabs(error_now(e, 0) - e->trend->last);
+    if (first)
+        e->book.came = gain(e, 0);
+    else if (e->followed)
+        book(e, t, q, p);
+    if (!first && (!(change <= large) || change > 2 * e->sudden))
         nevh__passage_look(&e->passage, t, q, p);
     e->sudden = fmax(e->sudden, change);
     nevh__passage_keep(&e->passage, t, q, p);
 }
 
 static int add_error(nevh_energy *e, size_t lane, double t) {
-    double came = gain(e, lane) - e->gained[lane] + e->booked;
-    if (!isfinite(came))
+    if (!isfinite(gain(e, lane)))
         return nevh__fail(&e->report, NEVH_EDOM,
                           "the balance of the energy is not finite at t = "
                           "%.9g: %s does not account for whole steps",
                           t, e->followed->work.integrator->name);
-    double error = (e->h[lane] - e->initial[lane] - came) / e->scale[lane];
-    nevh__trend_add(&e->trend[lane], t, error,
+    nevh__trend_add(&e->trend[lane], t, error_now(e, lane),
                     e->largest[lane] / e->scale[lane]);
     return NEVH_OK;
 }
@@ -502,7 +477,7 @@ void nevh__energy_restart(nevh_energy *e, size_t lane) {
     e->largest[lane] = e->seen[lane] = 0;
     e->steps[lane] = e->next_look[lane] = 0;
     e->trend[lane] = (nevh__trend){0};
-    e->booked = 0;
+    e->book.booked = e->book.came = e->missed = 0;
 }
 
 double nevh_energy_error(const nevh_energy *e, size_t lane) {
@@ -535,6 +510,7 @@ nevh_energy_report nevh_energy_result(const nevh_energy *e, size_t lane) {
     report.rounding = rounding_of(e, lane, scale);
     report.gradient =
         e->blur[lane] * (double)e->steps[lane] * e->largest[lane] / scale;
+    report.missed = e->missed / scale;
     nevh__trend_report(&trend, &report);
     report.verdict = nevh_energy_verdict(&report, 1);
     return report;

@@ -120,9 +120,12 @@ static nevh_verdict judge_alone(const nevh_energy_report *r) {
     return r->straightness >= 0.8 ? NEVH_DRIFTS : NEVH_RANDOM_WALK;
 }
 
-nevh_verdict nevh_energy_verdict(const nevh_energy_report *r, double times) {
-    if (!r)
-        return NEVH_UNDECIDED;
+bool nevh_energy_passes_over(const nevh_energy_report *r) {
+    static const double good = 0.5; /* of the largest error */
+    return r && r->missed > good * r->max;
+}
+
+static nevh_verdict judge(const nevh_energy_report *r, double times) {
     if (r->theory == NEVH_THEORY_NONE)
         times = INFINITY;
     if (r->samples <= 1) /* of the start alone */
@@ -139,4 +142,10 @@ nevh_verdict nevh_energy_verdict(const nevh_energy_report *r, double times) {
         return NEVH_UNDECIDED;
     return r->theory == NEVH_THEORY_LOSES ? judge_loss(r)
                                           : judge_kept(r, times);
+}
+
+nevh_verdict nevh_energy_verdict(const nevh_energy_report *r, double times) {
+    nevh_verdict verdict = r ? judge(r, times) : NEVH_UNDECIDED;
+    bool passes = verdict != NEVH_BOUNDED && nevh_energy_passes_over(r);
+    return passes ? NEVH_UNDECIDED : verdict;
 }

@@ -1,8 +1,7 @@
 /* nevh: how H changes with time: stretches of it are halved where the terms
    change.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "expression/timing_parts_private.h"
-#include "expression/timing_private.h"
+#include "expression/timing_stretch_private.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -17,28 +16,8 @@ static const double most_work = 4e6;     /* operations, of either pass */
 static const double resolved = 0.5;      /* of the time of a change */
 static const double steep = 1e-6;        /* of the range, without bound */
 static const double certain_jump = 1e-6; /* of the range */
-static const double slower = 0.25;       /* reach, by the distance */
 
-typedef struct {
-    double low, high, rate; /* rate: 1/time of the fastest change */
-    size_t effect;          /* whose that is, or whose break */
-    bool broken, pole;
-} stretch;
-
-struct nevh_timing {
-    nevh__time_parts parts;
-    double low, high, least; /* least: of what is halved */
-    double *range;           /* by part: over all the time */
-    double *before;          /* by part, to be compared */
-    stretch *cell;
-    double *bound; /* by stretch: the reach from what lies before it */
-    size_t cells, cell_capacity, halved, most_halved;
-    nevh_time_break *breaks;
-    size_t n_breaks, break_capacity;
-    double shortest, shortest_at, frequency;
-    size_t shortest_effect, frequency_effect;
-    bool whole, failed;
-};
+typedef nevh__time_stretch stretch;
 
 /* Of a part, by its range.  One without bounds is a pole, or is within a function
    that has bounds. */
@@ -271,10 +250,6 @@ static int by_break(const void *a, const void *b) {
     return (x->before > y->before) - (x->before < y->before);
 }
 
-static double own_reach(const stretch *c) {
-    return c->rate > 0 ? 1 / c->rate : INFINITY;
-}
-
 /* In order of time; neighbours are one. */
 static void order_breaks(nevh_timing *m) {
     size_t kept = 0;
@@ -298,14 +273,16 @@ static void find_reach(nevh_timing *m) {
     double reach = INFINITY;
     for (size_t i = 0; i < count && !m->failed; i++) {
         m->bound[2 * i] = reach;
-        reach = fmin(reach + slower * (m->cell[i].high - m->cell[i].low),
-                     own_reach(&m->cell[i]));
+        reach = fmin(reach + nevh__reach_slower *
+                                 (m->cell[i].high - m->cell[i].low),
+                     nevh__stretch_reach(&m->cell[i]));
     }
     reach = INFINITY;
     for (size_t i = count; i-- > 0 && !m->failed;) {
         m->bound[2 * i + 1] = reach;
-        reach = fmin(reach + slower * (m->cell[i].high - m->cell[i].low),
-                     own_reach(&m->cell[i]));
+        reach = fmin(reach + nevh__reach_slower *
+                                 (m->cell[i].high - m->cell[i].low),
+                     nevh__stretch_reach(&m->cell[i]));
     }
 }
 
@@ -335,7 +312,7 @@ static bool is_at_pole(const nevh_timing *m, const stretch *c) {
 static void find_shortest(nevh_timing *m) {
     m->shortest = INFINITY;
     for (size_t i = 0; i < m->cells; i++) {
-        double time = own_reach(&m->cell[i]);
+        double time = nevh__stretch_reach(&m->cell[i]);
         if (time < m->shortest && is_large(m, i) &&
             !is_at_pole(m, &m->cell[i])) {
             m->shortest = time;
@@ -433,67 +410,4 @@ void nevh_timing_free(nevh_timing *m) {
     free(m->bound);
     free(m->breaks);
     free(m);
-}
-
-size_t nevh_timing_breaks(const nevh_timing *m) {
-    return m ? m->n_breaks : 0;
-}
-
-nevh_time_break nevh_timing_break(const nevh_timing *m, size_t i) {
-    return m && i < m->n_breaks ? m->breaks[i] : (nevh_time_break){0};
-}
-
-double nevh_timing_shortest(const nevh_timing *m, double *t,
-                            const char **effect) {
-    bool any = m && m->shortest < INFINITY;
-    if (any && t)
-        *t = m->shortest_at;
-    if (any && effect)
-        *effect = nevh_system_effect_name(m->parts.system, m->shortest_effect);
-    return any ? m->shortest : INFINITY;
-}
-
-double nevh_timing_frequency(const nevh_timing *m, const char **effect) {
-    bool any = m && m->frequency > 0;
-    if (any && effect)
-        *effect = nevh_system_effect_name(m->parts.system, m->frequency_effect);
-    return any ? m->frequency : 0;
-}
-
-bool nevh_timing_whole(const nevh_timing *m) {
-    return m && m->whole;
-}
-
-/* The stretch that holds a time. */
-static size_t find(const nevh_timing *m, double t) {
-    size_t from = 0, until = m->cells;
-    while (until - from > 1) {
-        size_t middle = from + (until - from) / 2;
-        *(m->cell[middle].low <= t ? &from : &until) = middle;
-    }
-    return from;
-}
-
-double nevh__timing_reach(const nevh_timing *m, double t) {
-    if (!m || !m->cells)
-        return INFINITY;
-    size_t i = find(m, t);
-    const stretch *c = &m->cell[i];
-    double from = fmax(t - c->low, 0), to = fmax(c->high - t, 0);
-    return fmin(own_reach(c), fmin(m->bound[2 * i] + slower * from,
-                                   m->bound[2 * i + 1] + slower * to));
-}
-
-const nevh_time_break *nevh__timing_next(const nevh_timing *m, double t,
-                                         bool forward) {
-    size_t from = 0, until = m ? m->n_breaks : 0;
-    while (from < until) {
-        size_t middle = from + (until - from) / 2;
-        bool later = forward ? m->breaks[middle].after > t
-                             : m->breaks[middle].before >= t;
-        *(later ? &until : &from) = later ? middle : middle + 1;
-    }
-    if (forward)
-        return m && from < m->n_breaks ? &m->breaks[from] : NULL;
-    return from > 0 ? &m->breaks[from - 1] : NULL;
 }

@@ -11,5 +11,11 @@ double nevh__timing_reach(const nevh_timing *, double t);
 /* The next break after t, towards either side; NULL: there is none. */
 const nevh_time_break *nevh__timing_next(const nevh_timing *, double t,
                                          bool forward);
+/* The next time at which a stretch ends over which terms change at one rate;
+   infinite: there is none. */
+double nevh__timing_edge(const nevh_timing *, double t, bool forward);
+/* Whether a step between two times passes over a change of a term, which takes
+   less than half of it. */
+bool nevh__timing_is_fast(const nevh_timing *, double from, double to);
 
 #endif

@@ -104,6 +104,76 @@ TEST_EACH(jumps_are_energy_from_outside, sizeof jumps / sizeof *jumps) {
     tear_down(&s);
 }
 
+/* Changes that steps pass over: the energy from outside is their integral. */
+static const struct {
+    const char *effects;
+    double most; /* of the error */
+} passed[] = {
+    {SPRING "0.3*x*tanh((t-7.1)/1e-6)", 2e-3},
+    {SPRING "0.3*x^2*(1+tanh((t-2.503)/1e-5))", 2e-2},
+    {SPRING "3*x*exp(-((t-7.1)/0.0007)^2)", 5e-2},
+    {SPRING "x*exp(-((t-4.2)/1e-4)^2) + x*exp(-((t-9.3)/2e-4)^2)", 1e-2},
+    {SPRING "0.1*p_x^2*tanh((t-5.006)/1e-7)", 2e-3},
+    {SPRING "0.2*x/(1 + exp((3.3-t)/1e-6))", 2e-3},
+};
+
+static nevh_energy_report report_of(const setup *s,
+                                    const nevh_integrator *scheme, double h) {
+    nevh_options o = {
+        .gradient = nevh_exact, .q = s->q, .p = s->p, .balance = true};
+    nevh_stepper *stepper = nevh_stepper_new(s->system, scheme, &o);
+    nevh_energy *e = nevh_energy_new(s->system, NULL);
+    nevh_timing *timing = nevh_timing_new(s->system, 0, 12, s->q, s->p);
+    double q = s->q[0], p = s->p[0];
+    nevh_energy_expect(e, stepper);
+    nevh_energy_follow(e, stepper);
+    ck_assert_int_eq(nevh_energy_book(e, timing), NEVH_OK);
+    nevh_observer o1 = {nevh_energy_observe, e, 1};
+    ck_assert_int_eq(
+        nevh_run(stepper, 0, h, (size_t)rint(12 / h), &q, &p, &o1, 1), NEVH_OK);
+    nevh_energy_report report = nevh_energy_result(e, 0);
+    nevh_energy_free(e);
+    nevh_timing_free(timing);
+    nevh_stepper_free(stepper);
+    return report;
+}
+
+TEST_EACH(passed_changes_are_energy_from_outside,
+          sizeof passed / sizeof *passed) {
+    setup s = set_up("x = 1, 0.3", passed[_i].effects);
+    nevh_energy_report r = report_of(&s, nevh_gauss12, 0.01);
+    ck_assert_double_lt(r.max, passed[_i].most);
+    ck_assert_double_lt(report_of(&s, nevh_rk4, 0.01).max, passed[_i].most);
+    tear_down(&s);
+}
+
+/* Momenta that decay are energy that goes, beside what changes come to. */
+TEST(passed_changes_leave_friction) {
+    setup s = set_up("x = 1, 0.3", SPRING "0.3*x*tanh((t-7.1)/1e-6)\n"
+                                          "[friction]\ndrag = x: 0.5");
+    ck_assert_double_lt(report_of(&s, nevh_gauss12, 0.01).max, 2e-3);
+    tear_down(&s);
+}
+
+/* A chirp that steps lose says nothing of the scheme; one that is too weak to
+   matter leaves it its verdict. */
+TEST(verdicts_are_not_of_what_steps_pass_over) {
+    setup s = set_up("x = 1, 0.3", SPRING "0.3*x*cos(t^2*40)");
+    nevh_energy_report r = report_of(&s, nevh_rk4, 0.05);
+    ck_assert(nevh_energy_passes_over(&r));
+    ck_assert_int_eq(r.verdict, NEVH_UNDECIDED);
+    tear_down(&s);
+    s = set_up("x = 1, 0.3", SPRING "1e-14*x*cos(t^2*40)");
+    r = report_of(&s, nevh_rk4, 0.05);
+    ck_assert(!nevh_energy_passes_over(&r));
+    ck_assert_int_eq(r.verdict, NEVH_DRIFTS);
+    tear_down(&s);
+    s = set_up("x = 1, 0.3", SPRING "0.3*x*cos(t)");
+    r = report_of(&s, nevh_rk4, 0.05);
+    ck_assert_double_eq(r.missed, 0);
+    tear_down(&s);
+}
+
 #define PLANE "K = (p_x^2 + p_y^2)/2\nV = "
 /* When solutions end; NAN: they do not, but some come close. */
 static const struct {

@@ -77,7 +77,13 @@ void verdict_tell_open(const plan *p, const row rows[], size_t count,
     char *subject = verdict_subject(p, rows, count, r);
     char *until = r->followed > 0 ? verdict_until(p, r) : NULL;
     char *unit = verdict_unit(p, " ");
-    if (is_carried(e))
+    if (nevh_energy_passes_over(e))
+        list_print(words,
+                   "%s: H changes within a step, and the energy error, up to "
+                   "%.1e, is that of steps which pass over it: it says nothing "
+                   "of the scheme; take a shorter step.",
+                   subject, r->energy.max);
+    else if (is_carried(e))
         list_print(
             words,
             "%s: the energies of the motion grow%s%s, and the error with "

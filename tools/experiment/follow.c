@@ -6,13 +6,14 @@
 bool row_drifts(const row *r) {
     return r->energy.verdict == NEVH_DRIFTS ||
            (r->energy.verdict == NEVH_UNDECIDED &&
-            r->energy.theory == NEVH_THEORY_LOSES);
+            r->energy.theory == NEVH_THEORY_LOSES &&
+            !nevh_energy_passes_over(&r->energy));
 }
 
 void row_follow(const plan *p, row *r) {
     nevh_verdict own = r->energy.verdict;
     if (!r->ran || (own != NEVH_UNDECIDED && own != NEVH_BOUNDED) ||
-        isfinite(r->stopped))
+        isfinite(r->stopped) || nevh_energy_passes_over(&r->energy))
         return;
     if (p->jumps && !nevh_timing_whole(p->jumps)) { /* known no further */
         if (!nevh_timing_whole(p->timing))

@@ -47,7 +47,7 @@ nevh_energy *row_energy(const plan *p, const row *r, const nevh_stepper *s) {
     nevh_energy_expect(energy, s);
     if (p->balance)
         nevh_energy_follow(energy, s);
-    if (p->balance && p->jumps)
+    if (p->balance && p->timing)
         nevh_energy_book(energy,
                          nevh_timing_whole(p->jumps) ? p->jumps : p->timing);
     plan_set_scale(p, energy);

@@ -12,7 +12,16 @@ static size_t count_jumps(const nevh_timing *timing) {
     return count;
 }
 
-/* Jumps are booked as far as verdicts may follow a run. */
+/* Whether the longest steps may pass over a change. */
+static bool is_fast(const plan *p) {
+    double longest = 0, shortest = nevh_timing_shortest(p->timing, NULL, NULL);
+    for (size_t i = 0; i < p->dts; i++)
+        longest = fmax(longest, p->dt[i]);
+    return longest > 2 * shortest;
+}
+
+/* Jumps, and what steps pass over, are booked as far as verdicts may follow a
+   run. */
 void plan_look_at_time(plan *p) {
     static const double followed = 513; /* nevh_verdict_settle goes to 512 */
     double start = p->run->t_start, end = p->t_end;
@@ -21,7 +30,7 @@ void plan_look_at_time(plan *p) {
     p->timing = nevh_timing_new(p->system, start, end, p->q, p->p);
     if (!p->timing)
         tool_owned(NULL);
-    if (count_jumps(p->timing))
+    if (count_jumps(p->timing) || is_fast(p))
         p->jumps = nevh_timing_new(
             p->system, start, start + followed * (end - start), p->q, p->p);
 }
