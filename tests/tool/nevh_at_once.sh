@@ -75,10 +75,42 @@ four 0 chaos henon-heiles --t-end 100
 four 0 frequencies pendulum --t-end 200
 four 0 reference pendulum --t-end 5
 four 0 list scenes
+four 0 hard 'pendulum at rest' --integrators verlet,gauss4
 csv export pendulum --integrators verlet --dt 0.1
 csv section henon-heiles --t-end 300
 csv sweep pendulum --vary 'phi = range(0.1, 3, 8)' --t-end 500 --outcomes energy_error
 csv fit pendulum-filmed --data pendulum-filmed.csv --vary l
+
+# One of four makes a new scene, whole; the others leave it alone.
+command='four times new'
+for k in 1 2 3 4; do
+    (
+        "$nevh" new $work/new.nevh --from pendulum >/dev/null 2>$work/err.$k
+        echo $? >$work/code.$k
+    ) &
+done
+wait
+test "$(cat $work/code.? | sort | tr '\n' ' ')" = '0 2 2 2 ' ||
+    fails "exit statuses $(cat $work/code.?)"
+test "$(cat $work/err.? | grep -c 'is there already')" = 3 || fails "does not say why"
+"$nevh" new $work/alone.nevh --from pendulum >/dev/null
+grep -v '^#' $work/new.nevh >$work/text.1
+grep -v '^#' $work/alone.nevh >$work/text.2
+cmp -s $work/text.1 $work/text.2 || fails "makes another file"
+
+# Pages have times of this machine.
+whole_page() {
+    test "$(tail -n 1 $work/o)" = '</html>' || fails "a page without an end"
+    test "$(ls $work | grep -c '^o\.')" = 0 || fails "leaves temporary files"
+    test -z "$(ls -A $TMPDIR)" || fails "leaves $(ls -A $TMPDIR)"
+    rm -f $work/o
+}
+four 0 report oscillator --t-end 1 --dt 0.1 --integrators verlet -o $work/o
+whole_page
+if test -f web/kit.html || test -f "$srcdir/web/kit.html"; then
+    four 0 page pendulum -o $work/o
+    whole_page
+fi
 if command -v gnuplot >/dev/null 2>&1; then
     four 0 run pendulum --t-end 5 --samples 3 --plot $work/p.svg
     four 0 portrait pendulum --t-end 10 --plot $work/p.svg

@@ -58,35 +58,60 @@ void *tool_owned(void *);
 /* A status of the library; where it is NEVH_ENOMEM the program ends, too: a row
    that is refused, or a value left out, would say something about the scheme. */
 int tool_status(int status);
+#define nevh_chaos_confirm(...) tool_status(nevh_chaos_confirm(__VA_ARGS__))
+#define nevh_chaos_find(...)    tool_status(nevh_chaos_find(__VA_ARGS__))
 #define nevh_chaos_run(...)     tool_status(nevh_chaos_run(__VA_ARGS__))
+#define nevh_chaos_status(...)  tool_status(nevh_chaos_status(__VA_ARGS__))
 #define nevh_energy_status(...) tool_status(nevh_energy_status(__VA_ARGS__))
-#define nevh_field_status(...)  tool_status(nevh_field_status(__VA_ARGS__))
-#define nevh_loop_carry(...)    tool_status(nevh_loop_carry(__VA_ARGS__))
-#define nevh_loop_status(...)   tool_status(nevh_loop_status(__VA_ARGS__))
-#define nevh_run_until(...)     tool_status(nevh_run_until(__VA_ARGS__))
+#define nevh_field_energy_floor(...)                                           \
+    tool_status(nevh_field_energy_floor(__VA_ARGS__))
+#define nevh_field_gradient(...)  tool_status(nevh_field_gradient(__VA_ARGS__))
+#define nevh_field_status(...)    tool_status(nevh_field_status(__VA_ARGS__))
+#define nevh_field_value(...)     tool_status(nevh_field_value(__VA_ARGS__))
+#define nevh_frequencies(...)     tool_status(nevh_frequencies(__VA_ARGS__))
+#define nevh_loop_carry(...)      tool_status(nevh_loop_carry(__VA_ARGS__))
+#define nevh_loop_status(...)     tool_status(nevh_loop_status(__VA_ARGS__))
+#define nevh_probe_status(...)    tool_status(nevh_probe_status(__VA_ARGS__))
+#define nevh_rates_at(...)        tool_status(nevh_rates_at(__VA_ARGS__))
+#define nevh_reversal_defect(...) tool_status(nevh_reversal_defect(__VA_ARGS__))
+#define nevh_run(...)             tool_status(nevh_run(__VA_ARGS__))
+#define nevh_run_until(...)       tool_status(nevh_run_until(__VA_ARGS__))
+#define nevh_scene_enable(...)    tool_status(nevh_scene_enable(__VA_ARGS__))
 #define nevh_scene_judged_value(...)                                           \
     tool_status(nevh_scene_judged_value(__VA_ARGS__))
 #define nevh_scene_member_start(...)                                           \
     tool_status(nevh_scene_member_start(__VA_ARGS__))
+#define nevh_scene_number(...) tool_status(nevh_scene_number(__VA_ARGS__))
 #define nevh_scene_part_values(...)                                            \
     tool_status(nevh_scene_part_values(__VA_ARGS__))
 #define nevh_scene_section_cross(...)                                          \
     tool_status(nevh_scene_section_cross(__VA_ARGS__))
 #define nevh_scene_section_items(...)                                          \
     tool_status(nevh_scene_section_items(__VA_ARGS__))
+#define nevh_scene_set(...) tool_status(nevh_scene_set(__VA_ARGS__))
+#define nevh_scene_set_judged(...)                                             \
+    tool_status(nevh_scene_set_judged(__VA_ARGS__))
+#define nevh_scene_set_outcomes(...)                                           \
+    tool_status(nevh_scene_set_outcomes(__VA_ARGS__))
+#define nevh_scene_set_start(...) tool_status(nevh_scene_set_start(__VA_ARGS__))
 #define nevh_scene_shown_values(...)                                           \
     tool_status(nevh_scene_shown_values(__VA_ARGS__))
 #define nevh_scene_start(...)  tool_status(nevh_scene_start(__VA_ARGS__))
 #define nevh_scene_status(...) tool_status(nevh_scene_status(__VA_ARGS__))
 #define nevh_scene_stop_reached(...)                                           \
     tool_status(nevh_scene_stop_reached(__VA_ARGS__))
+#define nevh_scene_vary(...)      tool_status(nevh_scene_vary(__VA_ARGS__))
 #define nevh_sections_status(...) tool_status(nevh_sections_status(__VA_ARGS__))
 #define nevh_stepper_apply(...)   tool_status(nevh_stepper_apply(__VA_ARGS__))
 #define nevh_stepper_status(...)  tool_status(nevh_stepper_status(__VA_ARGS__))
+#define nevh_symplecticity_defect(...)                                         \
+    tool_status(nevh_symplecticity_defect(__VA_ARGS__))
 /* What is NAN where memory is out. */
 double tool_number(double);
 #define nevh_stability_limit(...)                                              \
     (errno = 0, tool_number(nevh_stability_limit(__VA_ARGS__)))
+#define nevh_stability_growth(...)                                             \
+    (errno = 0, tool_number(nevh_stability_growth(__VA_ARGS__)))
 #define nevh_stability_angle(...)                                              \
     (errno = 0, tool_number(nevh_stability_angle(__VA_ARGS__)))
 /* So every object that the command asks for is there. */

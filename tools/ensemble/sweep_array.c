@@ -59,11 +59,11 @@ static char *tell_story(const sweep_job *j) {
         free(all);
         all = longer;
     }
-    char *scene = nevh_scene_write(j->plan.scene, NULL);
+    char *scene = tool_owned(nevh_scene_write(j->plan.scene, NULL));
     char *whole =
         text_print("%s# status: 0 not yet run, 1 done, 2 failed, 3 no "
                    "start\n\n[scene as run]\n%s",
-                   all, scene ? scene : "");
+                   all, scene);
     free(scene);
     free(all);
     return whole;

@@ -23,7 +23,7 @@ static const char tiny[] = "[parameters]\n"
 static const char *scene(void) {
     static char *path;
     if (!path) {
-        path = fuzz_file("tiny.nevh");
+        path = fuzz_file("arguments.nevh");
         fuzz_write(path, tiny, sizeof tiny - 1);
     }
     return path;

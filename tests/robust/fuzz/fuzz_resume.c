@@ -74,7 +74,7 @@ static const double times[] = {0, 0.1, 0.15, 0.7, 2};
 static plan plan_of(const char *integrator, options *o) {
     static char *scene;
     if (!scene) {
-        scene = fuzz_file("tiny.nevh");
+        scene = fuzz_file("resume.nevh");
         fuzz_write(scene, tiny, sizeof tiny - 1);
     }
     char *argv[] = {
