@@ -27,6 +27,7 @@ suites = \
 	tests/taylor/check_taylor \
 	tests/taylor/check_compiled \
 	tests/taylor/check_domain \
+	tests/taylor/check_reach \
 	tests/taylor/check_certain \
 	tests/scene/check_scene \
 	tests/scene/check_scene_errors \

@@ -162,21 +162,21 @@ static double size_of(const nevh_work *w, const double rows[], size_t k,
     return ldexp(most, shift);
 }
 
-/* How long a series holds: where either of the last two terms is the tolerance.
-   By powers of two in units in which the state changes by itself in about 1, so
+/* How long a series holds.  By powers of two in units in which the state changes by itself in about 1, so
    that other units of time or length give the same digits. */
 static double reach_of(const nevh_work *w, const double rows[]) {
     const taylor_plan *plan = w->plan;
-    int exponent = 0, p = (int)plan->order;
-    double tolerance = w->options->tolerance;
+    int exponent = 0;
+    double tolerance = log2(w->options->tolerance), reach = INFINITY;
     double rate = size_of(w, rows, 1, 0);
     if (rate > 0)
         frexp(rate, &exponent);
-    double last = tolerance / size_of(w, rows, plan->order, -p * exponent);
-    double before =
-        tolerance / size_of(w, rows, plan->order - 1, (1 - p) * exponent);
-    double reach = exp2(fmin(log2(last) / p, log2(before) / (p - 1)));
-    return ldexp(reach, -exponent);
+    for (size_t k = plan->order; k >= plan->order / 2; k--) {
+        double size = log2(size_of(w, rows, k, -(int)k * exponent));
+        reach =
+            fmin(reach, nevh__series_reach(plan->order, tolerance, k, size));
+    }
+    return ldexp(exp2(reach), -exponent);
 }
 
 /* The state at a time since the beginning, in 2n; as its change, which is then
@@ -282,11 +282,7 @@ static int begin(nevh_work *w, const chain *z, double t, double h) {
     if (!finite && fail_at_edge(w, z, t))
         return NEVH_EDOM;
     if (!finite)
-        return nevh_work_fail(w, NEVH_EDOM,
-                              "the series at t = %.9g is not finite: H has no "
-                              "derivatives there, or the state is out of its "
-                              "domain",
-                              t);
+        return nevh_work_fail(w, NEVH_EDOM, NEVH__SERIES_NOT_FINITE, t);
     if (LONGER && plan->first)
         find_lost(w, z, t);
     *z->reach = fmin(reach_of(w, z->rows), plan->longest * fabs(h));

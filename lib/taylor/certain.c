@@ -26,7 +26,8 @@ struct nevh_certain {
     int digits;
     nevh__recurrence *recurrence;
     orbit fine, coarse; /* both of pairs, or neither */
-    bool parted;        /* both, by now */
+    double at, parted; /* times since t0: now, and when both were far apart; the
+                           latter INFINITY: never */
     const nevh_system *system;
     nevh_timing *timing; /* from t0 until `seen`; NULL: H reads no time */
     double seen;
@@ -97,6 +98,8 @@ static int start_both(nevh_certain *c, bool pairs) {
     if (status)
         return status;
     shorten_first(&c->coarse);
+    c->at = 0;
+    c->parted = INFINITY;
     return start(c, &c->fine, pairs, fmax(tolerance / 30, finest));
 }
 
@@ -186,17 +189,34 @@ static bool any_is_far(const nevh_certain *c, size_t from) {
     return found;
 }
 
-/* Then what digits a variable has in common is chance.  Orbits part in coordinates and
+/* From then on what digits a variable has in common is chance.  Orbits part in coordinates and
    in momenta; momenta alone differ where they are rounding, at an equilibrium. */
 static bool have_parted(const nevh_certain *c) {
     return any_is_far(c, 0) && any_is_far(c, c->n);
 }
 
+/* Some series further, or to t where that is nearer. */
+static nevh__wide next_look(const nevh_certain *c, nevh__wide t) {
+    static const int apart = 16; /* series */
+    const orbit *o = &c->fine;
+    nevh__wide now = c->t0 + c->at;
+    nevh__wide by = apart * (o->pairs ? o->dd.reach : o->quad.reach);
+    bool near = !(fabs((double)(t - now)) > (double)by) || now + by == now;
+    return near ? t : t > now ? now + by : now - by;
+}
+
 static int go_both(nevh_certain *c, nevh__wide t) {
-    int status = go(c, &c->coarse, t);
-    if (!status)
-        status = go(c, &c->fine, t);
-    c->parted = !status && have_parted(c);
+    int status = NEVH_OK;
+    for (bool there = false; !status && !there;) {
+        nevh__wide next = next_look(c, t);
+        there = next == t;
+        status = go(c, &c->coarse, next);
+        if (!status)
+            status = go(c, &c->fine, next);
+        c->at = (double)(next - c->t0);
+        if (!status && have_parted(c))
+            c->parted = fmin(c->parted, fabs(c->at));
+    }
     return status;
 }
 
@@ -288,7 +308,7 @@ double nevh_certain_error(const nevh_certain *c, size_t k) {
     double once = c->fine.pairs ? rounding_of_pairs : rounding;
     double size = fmax(most(&c->fine, k), term(&c->fine, k));
     double floor = once * sqrt((double)count(&c->fine)) * size;
-    if (c->parted)
+    if (fabs(c->at) >= c->parted)
         floor = 2 * most(&c->fine, k);
     return fmax(2 * apart(c, k), floor);
 }

@@ -3,6 +3,11 @@
    Where the argument of a root touches 0, or that of atan2 crosses its cut, the
    series of an orbit may know nothing of it: sqrt(x^2) continues as x or as -x.
    So the polynomials of these arguments are bounded over a series.
+
+   And what is too small to be seen where a series begins, as exp(-1000*x) or x^100,
+   may be large where it ends, so that the coefficients say nothing of how long it
+   holds.  Of exp(a) the terms fall from order N on while a changes by less than
+   N/2; the arguments of such functions change by less within a series.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "taylor/series_private.h"
 #include <float.h>
@@ -76,16 +81,50 @@ static bool is_off_cut(polynomial y, polynomial x, double h) {
     return (x.at[0] > 0 && keeps_sign(x, h)) || keeps_sign(y, h);
 }
 
+/* Logarithms of what is negligible: of exp, where doubles end, and of powers. */
+static const double negligible = -700, small_power = -300;
+
+/* Whether a^c is negligible from -h to h. */
+static bool is_small_power(polynomial a, double c, double change) {
+    double size = fabs(a.at[0]);
+    if (c < 0)
+        return size > change && c * log(size - change) < small_power;
+    return size + change == 0 || c * log(size + change) < small_power;
+}
+
+/* Whether terms of a function that is steep fall within -h to h, or the function
+   is constant there. */
+static bool is_resolved(const nevh__edge *e, polynomial a, double h) {
+    static const double part = 1 / 3.0; /* of the order */
+    static const double saturated = 50; /* tanh(50) = 1 - 7e-44 */
+    double most = part * (double)a.orders, change = size_of(a, h);
+    double at = a.at[0];
+    switch (e->function) {
+    case NEVH__EXP:
+        return change <= most || at + change < negligible;
+    case NEVH__TANH:
+        return 4 * change <= most || fabs(at) - change > saturated;
+    case NEVH__POWER:
+        return (change <= fabs(at) / 2 &&
+                fabs(e->exponent) * change <= most * fabs(at)) ||
+               is_small_power(a, e->exponent, change);
+    default:
+        return change <= most;
+    }
+}
+
 static bool is_clear(const nevh__recurrence *r, const double rows[],
                      size_t orders, size_t i, double h) {
     const nevh__edge *e = &r->edges[i];
     polynomial a = {rows + i, r->n_watched, orders};
     polynomial b = {rows + e->also, r->n_watched, orders};
-    return e->also     ? is_off_cut(a, b, h)
+    return e->steep    ? is_resolved(e, a, h)
+           : e->also   ? is_off_cut(a, b, h)
            : e->strict ? keeps_sign(a, h)
                        : is_not_negative(a, h);
 }
 
+/* Out, which: the edge of a domain that was met last, if any. */
 static double shorten(const nevh__recurrence *r, const double rows[],
                       size_t orders, double reach, size_t *which) {
     enum { MOST_HALVINGS = 200 };
@@ -95,7 +134,7 @@ static double shorten(const nevh__recurrence *r, const double rows[],
     int left = MOST_HALVINGS;
     for (size_t i = 0; i < r->n_edges; i++)
         while (h > 0 && !is_clear(r, rows, orders, i, h)) {
-            *which = i;
+            *which = r->edges[i].steep ? *which : i;
             h = left-- > 0 ? h / 2 : 0;
         }
     return h < fmin(reach, most) ? h : reach;
@@ -103,7 +142,7 @@ static double shorten(const nevh__recurrence *r, const double rows[],
 
 double nevh__domain_reach(const nevh__recurrence *r, const double rows[],
                           size_t orders, double reach) {
-    size_t which;
+    size_t which = SIZE_MAX;
     return r->n_edges ? shorten(r, rows, orders, reach, &which) : reach;
 }
 

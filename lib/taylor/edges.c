@@ -10,10 +10,31 @@ static bool is_whole(const nevh__graph *g, int node) {
            rint((double)x) == (double)x;
 }
 
+/* Of the steep functions of a node: an exponential, or a hyperbolic function, or a
+   power; the steepest power counts. */
+static bool has_steep(nevh__graph *g, const nevh__graph_edge *e) {
+    enum { GROWS = 4, SATURATES = 8, POWER = 16 };
+    uint8_t *watched = &g->nodes[e->node].watched;
+    uint8_t mine = e->function == NEVH__TANH    ? SATURATES
+                   : e->function == NEVH__POWER ? POWER
+                                                : GROWS;
+    bool had = *watched & mine;
+    for (size_t i = 0; had && mine == POWER && i < g->n_edges; i++) {
+        nevh__graph_edge *other = &g->edges[i];
+        if (other->node == e->node && other->steep &&
+            fabs(other->exponent) < fabs(e->exponent))
+            other->exponent = e->exponent;
+    }
+    *watched |= mine;
+    return had;
+}
+
 /* Whether a node is watched; it is from now on. */
 static bool has(nevh__graph *g, const nevh__graph_edge *e) {
     enum { STRICT = 1, LOOSE = 2 };
     uint8_t *watched = &g->nodes[e->node].watched;
+    if (e->steep)
+        return has_steep(g, e);
     for (size_t i = 0; e->also >= 0 && i < g->n_edges; i++)
         if (g->edges[i].node == e->node && g->edges[i].also == e->also)
             return true;
@@ -51,6 +72,73 @@ static int inside_one(nevh__graph *g, int a) {
                            nevh__graph_scale(g, -1, square(g, a)));
 }
 
+/* The power that an operation is of one base, if it is: 0, else. */
+static double power_of(const nevh__graph *g, unsigned operation, int a, int b,
+                       int *base) {
+    const nevh__graph_node *x = &g->nodes[a], *y = &g->nodes[b];
+    nevh__wide exponent;
+    *base = x->base;
+    switch (operation) {
+    case NEVH__MULTIPLY:
+        return x->base == y->base ? x->power + y->power : 0;
+    case NEVH__SQUARE:
+        return 2 * x->power;
+    case NEVH__CUBE:
+        return 3 * x->power;
+    case NEVH__POWER:
+        return nevh__graph_is_number(g, b, &exponent)
+                   ? (double)exponent * x->power
+                   : 0;
+    default:
+        return 0;
+    }
+}
+
+/* Where an operation is a power of higher order than a series may resolve. */
+static void watch_power(nevh__graph *g, unsigned operation, int a, int b,
+                        const char *effect) {
+    static const double least = 12, least_pole = 4;
+    int base;
+    double power = power_of(g, operation, a, b, &base);
+    double order = power * fmax(g->nodes[base].degree, 1);
+    if (order > least || order < -least_pole)
+        add(g, (nevh__graph_edge){.node = base,
+                                  .also = -1,
+                                  .steep = true,
+                                  .function = NEVH__POWER,
+                                  .exponent = power,
+                                  .effect = effect});
+}
+
+/* Where the function of nodes grows faster than any polynomial. */
+static void watch_steep(nevh__graph *g, unsigned operation, int a, int b,
+                        const char *effect) {
+    nevh__graph_edge e = {.node = a,
+                          .also = -1,
+                          .steep = true,
+                          .function = (uint8_t)operation,
+                          .effect = effect};
+    if (a < 0 || b < 0)
+        return;
+    switch (operation) {
+    case NEVH__EXP:
+    case NEVH__SINH:
+    case NEVH__COSH:
+    case NEVH__TANH:
+        break;
+    case NEVH__POWER:
+        if (nevh__graph_is_number(g, b, NULL))
+            return;
+        e.function = NEVH__EXP;
+        e.node =
+            nevh__graph_multiply(g, b, nevh__graph_call(g, NEVH__LOG, a, -1));
+        break;
+    default:
+        return;
+    }
+    add(g, e);
+}
+
 void nevh__graph_watch(nevh__graph *g, unsigned operation, int a, int b,
                        const char *effect) {
     nevh__graph_edge e = {.node = -1,
@@ -58,6 +146,9 @@ void nevh__graph_watch(nevh__graph *g, unsigned operation, int a, int b,
                           .strict = true,
                           .function = (uint8_t)operation,
                           .effect = effect};
+    watch_steep(g, operation, a, b, effect);
+    if (a >= 0 && b >= 0)
+        watch_power(g, operation, a, b, effect);
     switch (operation) {
     case NEVH__SQRT:
         e.strict = false;

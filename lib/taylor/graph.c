@@ -58,6 +58,23 @@ static bool widen(nevh__graph *g) {
     return true;
 }
 
+/* Sets the degree and the power of the node that is made next. */
+static void note_growth(const nevh__graph *g, nevh__graph_node *x) {
+    static const nevh__graph_node none = {.base = -1};
+    const nevh__graph_node *a = x->a < 0 ? &none : &g->nodes[x->a];
+    const nevh__graph_node *b = x->b < 0 ? &none : &g->nodes[x->b];
+    bool product = x->kind == NEVH__GRAPH_MULTIPLY;
+    x->degree = product ? a->degree + b->degree : fmaxf(a->degree, b->degree);
+    x->base = g->used;
+    x->power = 1;
+    if (x->kind == NEVH__GRAPH_VARIABLE)
+        x->degree = 1;
+    if (x->kind == NEVH__GRAPH_SCALE || (product && a->base == b->base)) {
+        x->base = a->base;
+        x->power = a->power + b->power;
+    }
+}
+
 static int node(nevh__graph *g, nevh__graph_node x) {
     if (g->failed || (g->used == g->capacity && !widen(g))) {
         g->failed = true;
@@ -66,6 +83,7 @@ static int node(nevh__graph *g, nevh__graph_node x) {
     size_t at = slot_of(g, &x);
     if (g->table[at])
         return g->table[at] - 1;
+    note_growth(g, &x);
     g->nodes[g->used++] = x;
     g->table[at] = g->used;
     return g->used - 1;

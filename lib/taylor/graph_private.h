@@ -37,16 +37,23 @@ typedef struct {
                   order of instances */
     int rank;
     size_t at;
+    float degree; /* as a polynomial of variables */
+    int base;     /* a multiple of whose power the node is, */
+    float power;  /* and which one; of itself, the first */
     nevh__wide number;
 } nevh__graph_node;
 
 /* What is to keep away from 0 on the way, or a function is not the one whose
    derivatives a series has: the arguments of roots, powers and logarithms, the
-   distance of others to the edge of their domain, and poles that a function sees. */
+   distance of others to the edge of their domain, and poles that a function sees.
+   Or what is to change little within a series: the arguments of functions that
+   grow faster than any polynomial, and may be lost in rounding where it begins. */
 typedef struct {
     int node, also; /* also: of atan2, whose node is y, x; else -1 */
     bool strict;    /* else it may touch 0: of a root that is squared again */
+    bool steep;     /* of a function that grows so */
     uint8_t function;
+    double exponent;    /* of steep powers */
     const char *effect; /* of the system */
 } nevh__graph_edge;
 

@@ -13,7 +13,8 @@ enum { NEVH__ORBIT_PAST = 128 };
     typedef struct nevh__orbit_##kind {                                            \
         const nevh__recurrence *recurrence;                                        \
         struct nevh__series_##kind *series;                                        \
-        size_t n, order, count; /* count: series so far */                         \
+        struct nevh__series_##kind *probe; /* of low order, elsewhere */           \
+        size_t n, order, count;            /* count: series so far */              \
         double tolerance;                                                          \
         double longest;  /* of a series; INFINITY: any */                          \
         double shortest; /* of the time that is left */                            \
@@ -21,6 +22,8 @@ enum { NEVH__ORBIT_PAST = 128 };
         real t, reach;   /* the series holds so long, to either side */            \
         real whole;      /* as long as coefficients say, no edge being met */      \
         number *rows;    /* 2n times order + 1 */                                  \
+        number *probed;  /* 2n times the probe's order + 1 */                      \
+        real *elsewhere; /* 2n: of the probe */                                    \
         real *start;     /* 2n: of the series */                                   \
         real *state;     /* 2n: as asked for last */                               \
         double *most;    /* 2n: of each variable, so far */                        \

@@ -13,6 +13,8 @@
 
 typedef struct NAMED(nevh__orbit) orbit;
 
+enum { PROBE_ORDER = 2 };
+
 bool NAMED(nevh__orbit_init)(orbit *o, const nevh__recurrence *r,
                              double tolerance) {
     size_t order = (size_t)ceil(2 - 0.6 * log(tolerance));
@@ -25,17 +27,24 @@ bool NAMED(nevh__orbit_init)(orbit *o, const nevh__recurrence *r,
                  .unit = 1};
     o->series = NAMED(nevh__series_new)(r, order);
     o->rows = nevh__array(2 * r->n * (order + 1), sizeof *o->rows);
+    o->probe = NAMED(nevh__series_new)(r, PROBE_ORDER);
+    o->probed = nevh__array(2 * r->n * (PROBE_ORDER + 1), sizeof *o->probed);
+    o->elsewhere = nevh__array(2 * r->n, sizeof *o->elsewhere);
     o->start = nevh__array(2 * r->n, sizeof *o->start);
     o->state = nevh__array(2 * r->n, sizeof *o->state);
     o->most = nevh__array(6 * r->n, sizeof *o->most);
     o->seen = o->most ? o->most + 2 * r->n : NULL;
     o->term = o->most ? o->most + 4 * r->n : NULL;
-    return o->series && o->rows && o->start && o->state && o->most;
+    return o->series && o->rows && o->probe && o->probed && o->elsewhere &&
+           o->start && o->state && o->most;
 }
 
 void NAMED(nevh__orbit_clear)(orbit *o) {
     NAMED(nevh__series_free)(o->series);
+    NAMED(nevh__series_free)(o->probe);
     free(o->rows);
+    free(o->probed);
+    free(o->elsewhere);
     free(o->start);
     free(o->state);
     free(o->most);
@@ -61,11 +70,23 @@ static long double largest(const orbit *o, size_t order) {
     return most;
 }
 
+/* Half the radius of convergence, as the last coefficients show it: those of a part
+   that is small, but grows on the way, are within the tolerance beyond it. */
+static long double convergence(const orbit *o) {
+    size_t last = o->order, by = last / 3;
+    long double now = fmaxl(largest(o, last), largest(o, last - 1));
+    long double then = fmaxl(largest(o, last - by), largest(o, last - by - 1));
+    return now > 0 && then > 0 ? powl(then / now, 1 / (long double)by) / 2
+                               : INFINITY;
+}
+
 static real reach_of(const orbit *o) {
-    long double last = logl(o->tolerance / largest(o, o->order));
-    long double before = logl(o->tolerance / largest(o, o->order - 1));
-    return o->unit * expl(fminl(last / (long double)o->order,
-                                before / (long double)(o->order - 1)));
+    double tolerance = log2(o->tolerance), reach = INFINITY;
+    for (size_t k = o->order; k >= o->order / 2; k--) {
+        double size = (double)log2l(largest(o, k));
+        reach = fmin(reach, nevh__series_reach(o->order, tolerance, k, size));
+    }
+    return o->unit * exp2l(reach);
 }
 
 static void take_unit(orbit *o, double unit) {
@@ -133,6 +154,58 @@ static bool ends(const orbit *o) {
     return false;
 }
 
+/* The state that a series has after a time. */
+static void place(const orbit *o, real since, real state[]) {
+    size_t each = 2 * o->n;
+    number by = narrow(since / o->unit);
+    for (size_t i = 0; i < each; i++) {
+        const number *row = o->rows + o->order * each + i;
+        number sum = *row;
+        for (size_t k = o->order; --k > 0;)
+            sum = plus(times(sum, by), *(row -= each));
+        state[i] = widen(times(sum, by)) + o->start[i];
+    }
+}
+
+/* The slope that it has there, in its unit. */
+static long double slope_after(const orbit *o, size_t i, real since) {
+    long double sum = 0, by = (long double)(since / o->unit);
+    for (size_t k = o->order; k > 0; k--)
+        sum = sum * by + (long double)k * lengthen(o->rows[k * 2 * o->n + i]);
+    return sum;
+}
+
+/* Whether H has the slopes that the series has after a time. */
+static bool is_of_H(orbit *o, real since) {
+    static const long double alike = 1e-6L, nothing = 1e-100L;
+    size_t each = 2 * o->n;
+    place(o, since, o->elsewhere);
+    NAMED(nevh__series_in)(o->probe, o->unit);
+    if (!NAMED(nevh__series_expand)(o->probe, o->t + since, o->elsewhere,
+                                    o->probed))
+        return false;
+    for (size_t i = 0; i < each; i++) {
+        long double slope = lengthen(o->probed[each + i]);
+        long double mine = slope_after(o, i, since);
+        long double allowed =
+            alike * fmaxl(fabsl(mine), fabsl(slope)) + nothing * size_of(o, i);
+        if (!(fabsl(mine - slope) <= allowed))
+            return false;
+    }
+    return true;
+}
+
+/* Beyond its radius of convergence a series holds where the last coefficients are
+   rounding, as near x = 0 of sin(x)/x, and not where a part is so small that they are
+   within the tolerance, as far from 0 of x^-12. */
+static void limit_by_convergence(orbit *o) {
+    real most = (real)convergence(o) * o->unit;
+    if (o->reach <= most || is_of_H(o, o->backward ? -o->reach : o->reach))
+        return;
+    o->reach = most;
+    o->stops = false;
+}
+
 static int begin(orbit *o, real t, const real state[], nevh__report *report) {
     for (size_t i = 0; i < 2 * o->n; i++)
         o->most[i] = fmax(o->most[i], fabs((double)state[i]));
@@ -144,10 +217,7 @@ static int begin(orbit *o, real t, const real state[], nevh__report *report) {
     if (!expand(o, t, state)) {
         int status = fail_at_edge(o, (double)t, report);
         return status ? status
-                      : nevh__fail(report, NEVH_EDOM,
-                                   "the series at t = %.9g is not finite: H "
-                                   "has no derivatives there, or the state is "
-                                   "out of its domain",
+                      : nevh__fail(report, NEVH_EDOM, NEVH__SERIES_NOT_FINITE,
                                    (double)t);
     }
     o->reach = o->whole = FUNCTION(fmin)(reach_of(o), (real)o->longest);
@@ -157,6 +227,7 @@ static int begin(orbit *o, real t, const real state[], nevh__report *report) {
                o->unit;
     if (o->timing)
         limit_by_time(o);
+    limit_by_convergence(o);
     o->held[o->count % NEVH__ORBIT_PAST] = (double)o->reach;
     o->speed[o->count % NEVH__ORBIT_PAST] = (double)(largest(o, 1) / o->unit);
     return NEVH_OK;
@@ -189,19 +260,12 @@ static void note_sizes(orbit *o, double by) {
 }
 
 static void evaluate(orbit *o, real since) {
-    size_t each = 2 * o->n;
     note_sizes(o, (double)(since / o->unit));
-    number by = narrow(since / o->unit);
-    for (size_t i = 0; i < each; i++) {
-        const number *row = o->rows + o->order * each + i;
-        number sum = *row;
-        for (size_t k = o->order; --k > 0;)
-            sum = plus(times(sum, by), *(row -= each));
-        o->state[i] = widen(times(sum, by)) + o->start[i];
-    }
+    place(o, since, o->state);
 }
 
 int NAMED(nevh__orbit_next)(orbit *o, real t, nevh__report *report) {
+    static const double longer = 0x1p20;
     real next = t > o->t ? o->t + o->reach : o->t - o->reach;
     next = o->stops ? o->stop : next;
     if (!(o->reach > o->shortest * FUNCTION(fabs)(t - o->t)) || next == o->t) {
@@ -218,7 +282,7 @@ int NAMED(nevh__orbit_next)(orbit *o, real t, nevh__report *report) {
                                    (double)o->t);
     }
     evaluate(o, next - o->t);
-    take_unit(o, (double)o->whole);
+    take_unit(o, fmin((double)o->whole, longer * (double)o->reach));
     return begin(o, next, o->state, report);
 }
 

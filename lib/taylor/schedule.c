@@ -197,7 +197,9 @@ static bool write_edges(writer *w) {
         const nevh__graph_edge *e = &g->edges[i];
         r->watched[i] = value_of(w, w->s->item_of[e->node]);
         r->edges[i] = (nevh__edge){.strict = e->strict || root[e->node],
+                                   .steep = e->steep,
                                    .function = e->function,
+                                   .exponent = e->exponent,
                                    .effect = e->effect};
         if (e->also < 0)
             continue;

@@ -59,11 +59,24 @@ typedef struct {
 } nevh__recurrence;
 
 typedef struct nevh__edge {
-    bool strict;   /* as of a graph */
+    bool strict; /* as of a graph */
+    bool steep;
     uint32_t also; /* of atan2: x among what is watched; 0: it is none */
     uint8_t function;
+    double exponent;    /* of steep powers */
     const char *effect; /* NULL: of several */
 } nevh__edge;
+
+/* log2 of the reach by the size of the coefficients of order k, from order/2 on: the
+   last two are to be below the tolerance, and so are others beyond the last that is
+   not 0, as of x^4 from x = 0, where three of four are.
+   tolerance, size   their log2 */
+NEVH__INLINE double nevh__series_reach(size_t order, double tolerance, size_t k,
+                                       double size) {
+    static const double an_order = 3.3219280948873623; /* log2(10) */
+    double before = k + 1 < order ? (double)(order - k) : 0;
+    return (tolerance + before * an_order - size) / (double)k;
+}
 
 /* How long series hold, at most `reach`, before the edge of a domain is met, to
    either side.
@@ -93,6 +106,11 @@ nevh__recurrence *nevh__recurrence_wide(const nevh_system *,
                                         const nevh__wide friction[],
                                         bool broken, nevh__report *);
 void nevh__recurrence_free(nevh__recurrence *); /* NULL is allowed */
+
+/* What is said of coefficients that are not finite, at a time. */
+#define NEVH__SERIES_NOT_FINITE                                                \
+    "the series at t = %.9g is not finite: H has no derivatives there, the "   \
+    "state is out of its domain, or a value is beyond 1e308"
 
 /* Room to take coefficients up to an order in. */
 typedef struct nevh__series_double nevh__series_double;

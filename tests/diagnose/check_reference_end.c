@@ -118,7 +118,7 @@ TEST(growth_is_that_of_the_reversed_orbit) {
 
 /* A run that does not see what rows see: with their step it does. */
 TEST(steps_are_no_longer_than_asked_for) {
-    const char wall[] = "T = p_x^2/2\nV = 2*exp(-((x - 1.777)/0.0002)^2)";
+    const char wall[] = "T = p_x^2/2\nV = 2*exp(-((abs(x) - 1.777)/0.0002)^2)";
     setup blind = refer("x = 0, 1", wall, 4, NULL);
     setup seeing = refer("x = 0, 1", wall, 4,
                          &(nevh_reference_options){.longest = 0.0002});
