@@ -13,7 +13,6 @@
 #include "gradient/block_private.h"
 #include "gradient/evaluation_private.h"
 #include "gradient/step_selection_private.h"
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,6 +37,8 @@ typedef struct {
 /* Adds to *noise what rounding or underflow of values may do to it. */
 static double by_difference(const check *c, size_t k, size_t at, double delta,
                             double *noise) {
+    static const double underflow = 0x1p-511; /* whose square is DBL_MIN: of 1/x
+                                                 the derivative has x^2 */
     double move[8], x[8], h[8];
     for (size_t j = 0; j < 4; j++) {
         move[2 * j] = (double)(j + 1) * delta;
@@ -52,7 +53,7 @@ static double by_difference(const check *c, size_t k, size_t at, double delta,
                 fmax(rounding,
                      nevh__sample_rounding(c->selection, c->term, c->instance,
                                            k, at, move[i], h[i]));
-        *noise += 4 * fabs(weight) * (rounding + DBL_MIN);
+        *noise += 4 * fabs(weight) * (rounding + underflow);
     }
     return nevh__chord_slope(nevh_central8, 1, x, h);
 }
