@@ -21,9 +21,13 @@ void nevh__energy_lane_copy(nevh_energy *, size_t from, size_t to);
 /* The lane's next observation is its first. */
 void nevh__energy_restart(nevh_energy *, size_t lane);
 
-/* The largest effect, a mean over the orbit from there on, of a field for values;
-   0 where the orbit cannot be followed until there is one. */
+/* The largest energy of the motion, of a term of a field for values, along the
+   orbit from there on: neither constants nor where energies are counted from change
+   it.  0 where the orbit cannot be followed, or grows without end. */
 double nevh__orbit_energy(nevh_field *, double t, const double q[],
                           const double p[]);
+/* Of momenta alone, at the start; NAN where it has no value. */
+double nevh__start_kinetic(nevh_field *, double t, const double q[],
+                           const double p[]);
 
 #endif

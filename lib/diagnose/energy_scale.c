@@ -1,54 +1,138 @@
-/* nevh: how large are the energies of an orbit?
+/* nevh: how large are the energies of an orbit's motion?
+
+   Neither where energies are counted from nor the state that is the start says
+   that: of 1 - cos(x) near 0 only the change counts.  So of a term that reads
+   coordinates alone its range along the orbit is taken, and of one that reads
+   momenta how far it is from its value at rest.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/energy_private.h"
 #include "gradient/field_private.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* The last energy over the mean: of growth that has no end, no energy is typical. */
+/* Energies that are so many times as large in the second half of the time are those
+   of growth without end: it outruns t^3. */
 static const double growing = 8;
+
+enum { MOST = 4096 }; /* states that are looked at */
 
 typedef struct {
     nevh_field *values;
-    double *effects, sum, time, last;
-} mean;
+    double *now, *rest, *low, *high; /* by term */
+    double *still;                   /* 2n: the state, at rest */
+    double *until, *energy; /* by state: time, and the motion's so far */
+    double kinetic, start;
+    size_t count;
+} motion;
 
-/* The largest effect, over the time of the step. */
-static void add_largest(void *context, double t, double h, const double y[]) {
-    mean *m = context;
+static bool values_of(motion *m, double t, const double y[], double to[]) {
     nevh_field *f = m->values;
-    double most = 0;
-    if (nevh__field_moving_effects(f, t, y, y + f->n, m->effects))
-        return;
-    for (size_t i = 0; i < f->system->n_effects; i++)
-        most = fmax(most, fabs(m->effects[i]));
-    m->sum += h * most;
-    m->time += h;
-    m->last = most;
+    return !nevh__field_moving_terms(f, t, y, y + f->n, to);
 }
 
-double nevh__orbit_energy(nevh_field *values, double t, const double q[],
-                          const double p[]) {
-    size_t n = values->n;
+/* Of terms that read momenta, less what they are at rest where that is finite. */
+static double kinetic_of(motion *m, double t, const double y[]) {
+    nevh_field *f = m->values;
+    memcpy(m->still, y, f->n * sizeof *y);
+    bool rests = values_of(m, t, m->still, m->rest);
+    double most = 0;
+    for (size_t i = 0; i < f->n_terms; i++) {
+        double less = rests && isfinite(m->rest[i]) ? m->rest[i] : 0;
+        if (f->terms[i].np)
+            most = fmax(most, fabs(m->now[i] - less));
+    }
+    return most;
+}
+
+static double range_of(const motion *m) {
+    double most = 0;
+    for (size_t i = 0; i < m->values->n_terms; i++)
+        if (m->values->terms[i].nq && m->high[i] > m->low[i])
+            most = fmax(most, m->high[i] - m->low[i]);
+    return most;
+}
+
+static void look(void *context, double t, double h, const double y[]) {
+    motion *m = context;
+    (void)h;
+    if (m->count == MOST || !values_of(m, t, y, m->now))
+        return;
+    for (size_t i = 0; i < m->values->n_terms; i++) {
+        m->low[i] = m->count ? fmin(m->low[i], m->now[i]) : m->now[i];
+        m->high[i] = m->count ? fmax(m->high[i], m->now[i]) : m->now[i];
+    }
+    m->kinetic = fmax(m->kinetic, kinetic_of(m, t, y));
+    m->until[m->count] = t;
+    m->energy[m->count++] = fmax(m->kinetic, range_of(m));
+}
+
+/* That of all states; 0 where it goes on growing. */
+static double energy_of(const motion *m) {
+    double last = m->count ? m->energy[m->count - 1] : 0, half = last;
+    for (size_t i = m->count; i-- > 0;)
+        if (m->until[i] - m->start >= (m->until[m->count - 1] - m->start) / 2)
+            half = m->energy[i];
+    return isfinite(last) && last <= growing * half ? last : 0;
+}
+
+static bool allocate(motion *m) {
+    size_t terms = m->values->n_terms, n = m->values->n;
+    m->now = nevh__array(4 * terms + 2 * n + 2 * MOST, sizeof *m->now);
+    m->rest = m->now + terms;
+    m->low = m->rest + terms;
+    m->high = m->low + terms;
+    m->still = m->high + terms;
+    m->until = m->still + 2 * n;
+    m->energy = m->until + MOST;
+    return m->now;
+}
+
+static bool follow(motion *m, double t, const double q[], const double p[],
+                   double start[]) {
+    nevh_field *values = m->values;
     nevh_options o = {.gradient = nevh__best_gradient(values->system),
                       .t = t,
                       .q = q,
                       .p = p,
                       .portable = values->portable};
-    mean m = {.values = values};
-    double *sizes = nevh__array(2 * n, sizeof *sizes);
     bool differences = o.gradient != nevh_exact;
     nevh_field *own = differences ? nevh_field_new(values->system, &o) : NULL;
-    m.effects = nevh__array(values->system->n_effects, sizeof *m.effects);
-    bool fine = sizes && m.effects &&
-                (!differences || (own && !nevh_field_status(own)));
-    if (fine && !nevh__follow_orbit(differences ? own : values, t, q, p, sizes,
-                                    add_largest, &m))
-        m.time = 0;
+    bool fine = !differences || (own && !nevh_field_status(own));
+    memcpy(start, q, values->n * sizeof *q);
+    memcpy(start + values->n, p, values->n * sizeof *p);
+    look(m, t, 0, start);
+    double *sizes = start + 2 * values->n;
+    fine = fine && nevh__follow_orbit(differences ? own : values, t, q, p,
+                                      sizes, look, m);
     nevh_field_free(own);
-    free(m.effects);
-    free(sizes);
+    return fine;
+}
+
+double nevh__orbit_energy(nevh_field *values, double t, const double q[],
+                          const double p[]) {
+    motion m = {.values = values, .start = t};
+    double *state = nevh__array(4 * values->n, sizeof *state);
+    bool fine = state && allocate(&m) && follow(&m, t, q, p, state);
+    double energy = fine ? energy_of(&m) : 0;
+    free(m.now);
+    free(state);
     values->report = (nevh__report){0}; /* where values are not finite */
-    double energy = m.time > 0 ? m.sum / m.time : 0;
-    return isfinite(energy) && m.last <= growing * energy ? energy : 0;
+    return energy;
+}
+
+double nevh__start_kinetic(nevh_field *values, double t, const double q[],
+                           const double p[]) {
+    motion m = {.values = values, .start = t};
+    double *state = nevh__array(2 * values->n, sizeof *state), kinetic = NAN;
+    if (state && allocate(&m)) {
+        memcpy(state, q, values->n * sizeof *q);
+        memcpy(state + values->n, p, values->n * sizeof *p);
+        if (values_of(&m, t, state, m.now))
+            kinetic = kinetic_of(&m, t, state);
+    }
+    free(m.now);
+    free(state);
+    values->report = (nevh__report){0};
+    return kinetic;
 }

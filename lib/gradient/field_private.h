@@ -216,6 +216,10 @@ int nevh__field_noise(nevh_field *, double t, const double q[],
 int nevh__field_moving_effects(nevh_field *, double t, const double q[],
                                const double p[], double h[]);
 
+/* Of each term of the field, likewise. */
+int nevh__field_moving_terms(nevh_field *, double t, const double q[],
+                             const double p[], double h[]);
+
 /* H without the terms that read nothing, as h + roundoff: differences of these two
    parts are as accurate as the terms are, however large the sum.  size: the sum
    of the terms' |values|.  Arguments as nevh_field_value. */

@@ -75,6 +75,15 @@ int nevh__field_moving_values(nevh_field *f, size_t width, const double t[],
     return status;
 }
 
+static int term_value(nevh_field *f, nevh__planned *term, double t,
+                      const double q[], const double p[], double *h) {
+    double sum = 0, roundoff = 0;
+    nevh__block b = nevh__block_over(1, &t, q, p, 1, 1);
+    int status = add_term(f, term, b, &sum, &roundoff, NULL);
+    *h = sum + roundoff;
+    return status;
+}
+
 static int effects(nevh_field *f, bool constants, double t, const double q[],
                    const double p[], double h[]) {
     int status = nevh__field_ready(f);
@@ -82,12 +91,22 @@ static int effects(nevh_field *f, bool constants, double t, const double q[],
         h[i] = 0;
     for (size_t i = 0; !status && i < f->n_terms; i++) {
         nevh__planned *term = &f->terms[i];
-        double sum = 0, roundoff = 0;
-        nevh__block b = nevh__block_over(1, &t, q, p, 1, 1);
+        double value;
         if (!constants && !term->nv && !term->term->decl.time)
             continue;
-        status = add_term(f, term, b, &sum, &roundoff, NULL);
-        h[term->term->effect] += sum + roundoff;
+        status = term_value(f, term, t, q, p, &value);
+        h[term->term->effect] += value;
+    }
+    return status;
+}
+
+int nevh__field_moving_terms(nevh_field *f, double t, const double q[],
+                             const double p[], double h[]) {
+    int status = nevh__field_ready(f);
+    for (size_t i = 0; !status && i < f->n_terms; i++) {
+        h[i] = 0;
+        if (f->terms[i].nv)
+            status = term_value(f, &f->terms[i], t, q, p, &h[i]);
     }
     return status;
 }

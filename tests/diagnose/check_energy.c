@@ -130,6 +130,71 @@ TEST(scale_rule) {
     ck_assert_double_eq(r.scale, 1);
 }
 
+/* One observation, at the start. */
+static double scale_of_scene(const char *coordinates, const char *effects) {
+    nevh_scene *scene = scene_with(coordinates, effects);
+    double q[4], p[4];
+    ck_assert_int_eq(nevh_scene_start(scene, q, p), NEVH_OK);
+    nevh_energy *e = nevh_energy_new(nevh_scene_system(scene), NULL);
+    ck_assert_int_eq(nevh_energy_observe(e, 0, 0, q, p), NEVH_OK);
+    double scale = nevh_energy_result(e, 0).scale;
+    nevh_energy_free(e);
+    nevh_scene_free(scene);
+    return scale;
+}
+
+/* Near an equilibrium the energies are those of the motion, wherever energies are
+   counted from: scenes in pairs that move alike.  The last of each pair starts
+   elsewhere on nearly the same orbit, or has a constant. */
+static const struct {
+    const char *coordinates[2], *effects[2];
+    double least, most;
+} motions[] = {
+    {{"x = 1e-3", "x = 1e-3"},
+     {"H = p_x^2/2 + 1 - cos(x)", "H = p_x^2/2 - cos(x)"},
+     4.9e-7,
+     5.5e-7},
+    {{"x = 0", "x = 0"},
+     {"H = p_x^2/2 + 1 - cos(x)\nD = -1e-6*x*cos(1.3*t)",
+      "H = p_x^2/2 + 2*sin(x/2)^2\nD = -1e-6*x*cos(1.3*t)"},
+     1e-12,
+     2e-11},
+    {{"x = 0.01", "x = 0, 0.01"},
+     {"H = p_x^2/2 + cosh(x)", "H = p_x^2/2 + x^2/2"},
+     4.9e-5,
+     5.5e-5},
+    {{"x = 1.001\ny = 0", "x = 0.001\ny = 0"},
+     {"T = (p_x^2 + p_y^2)/2\nV = -exp(-(x-1)^2 - y^2)",
+      "T = (p_x^2 + p_y^2)/2\nV = x^2 + y^2"},
+     0.9e-6,
+     1.1e-6},
+    {{"r = 1.1225", "r = 1.1225"},
+     {"T = p_r^2/2\nV = 4*(1/r^12 - 1/r^6)",
+      "T = p_r^2/2\nV = 1 + 4*(1/r^12 - 1/r^6)"},
+     1e-8,
+     1e-6},
+};
+
+TEST_EACH(scale_is_of_the_motion, sizeof motions / sizeof *motions) {
+    double one =
+        scale_of_scene(motions[_i].coordinates[0], motions[_i].effects[0]);
+    double other =
+        scale_of_scene(motions[_i].coordinates[1], motions[_i].effects[1]);
+    ck_assert_double_gt(one, motions[_i].least);
+    ck_assert_double_lt(one, motions[_i].most);
+    ck_assert_double_eq_tol(one, other, 0.1 * one);
+}
+
+/* Large motions keep |H0|. */
+TEST(scale_of_large_motions) {
+    ck_assert_double_eq(
+        scale_of_scene("x = 1\ny = 0, 1",
+                       "T = (p_x^2 + p_y^2)/2\nV = -1/sqrt(x^2 + y^2)"),
+        0.5);
+    ck_assert_double_eq_tol(scale_of_scene("x = 1", "H = p_x^2/2 - cos(x)"),
+                            cos(1), 1e-15);
+}
+
 /* A scale that is given replaces the one that is found; none but a positive
    number is taken. */
 TEST(given_scale) {
