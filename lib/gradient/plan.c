@@ -36,14 +36,17 @@ static int check_options(nevh_field *f, const nevh_options *o) {
     for (size_t i = 0; i < 2 * f->n; i++) {
         double step = o->gradient_steps ? o->gradient_steps[i] : 0;
         double scale = o->scale ? o->scale[i] : 1;
+        char name[NEVH__VARIABLE];
+        nevh__variable_name(f->system, i >= f->n, i % f->n, name);
         if (!(step >= 0 && step <= DBL_MAX))
             return nevh__fail(&f->report, NEVH_EINVAL,
-                              "gradient step %zu, %g, is not a positive number",
-                              i, step);
+                              "the gradient step of %s, %g, is not a positive "
+                              "number",
+                              name, step);
         if (!(scale > 0 && scale <= DBL_MAX))
             return nevh__fail(&f->report, NEVH_EINVAL,
-                              "scale %zu, %g, is not a positive number", i,
-                              scale);
+                              "the scale of %s, %g, is not a positive number",
+                              name, scale);
     }
     return NEVH_OK;
 }

@@ -32,12 +32,13 @@ int nevh__plan_friction(nevh_stepper *s) {
     if (!s->rates)
         return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
     nevh_system_friction(w->system, s->rates);
+    char name[NEVH__VARIABLE];
     for (size_t k = 0; k < w->n; k++)
         if (!isfinite(s->rates[k]))
             return nevh__fail(&s->report, NEVH_EINVAL,
-                              "the rates of friction of momentum %zu add up to "
-                              "%g",
-                              k, s->rates[k]);
+                              "the rates of friction of %s add up to %g",
+                              nevh__variable_name(w->system, true, k, name),
+                              s->rates[k]);
     if (s->options.transform && !scheme->own_time)
         return nevh__fail(&s->report, NEVH_ESTRUCT,
                           "%s takes no friction under a time transform, which "

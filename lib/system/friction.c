@@ -11,12 +11,14 @@ static int check(nevh_system *s, const char *effect, const double rates[]) {
     if (!rates)
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "effect %s: the rates of friction are NULL", effect);
+    char name[NEVH__VARIABLE];
     for (size_t k = 0; k < s->n; k++)
         if (!isfinite(rates[k]))
             return nevh__fail(&s->report, NEVH_EINVAL,
-                              "effect %s: the rate of friction %g of momentum "
-                              "%zu is not a finite number",
-                              effect, rates[k], k);
+                              "effect %s: the rate of friction %g of %s is not "
+                              "a finite number",
+                              effect, rates[k],
+                              nevh__variable_name(s, true, k, name));
     return NEVH_OK;
 }
 

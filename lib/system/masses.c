@@ -18,12 +18,14 @@ const double *nevh__term_inverse_masses(const nevh__term_entry *term) {
 }
 
 static int check(nevh_system *s, const char *effect, const double masses[]) {
+    char name[NEVH__VARIABLE];
     for (size_t k = 0; masses && k < s->n; k++)
         if (!isfinite(1 / masses[k]) || !isfinite(masses[k]))
             return nevh__fail(&s->report, NEVH_EINVAL,
-                              "mass %zu of effect \"%s\" is %g: it must be a "
-                              "number other than 0",
-                              k, effect ? effect : "", masses[k]);
+                              "the mass of %s in effect \"%s\" is %g: it must "
+                              "be a number other than 0",
+                              nevh__variable_name(s, false, k, name),
+                              effect ? effect : "", masses[k]);
     return NEVH_OK;
 }
 

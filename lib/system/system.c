@@ -36,6 +36,7 @@ static int check_indices(nevh_system *s, const nevh_term *term, char kind,
                           term->effect, each, kind, s->n);
     for (size_t i = 0; indices && i < term->count; i++) {
         const size_t *row = indices + i * each;
+        char name[NEVH__VARIABLE];
         size_t k = 0;
         while (k < each && row[k] < s->n && !read[row[k]])
             read[row[k++]] = true;
@@ -44,9 +45,10 @@ static int check_indices(nevh_system *s, const nevh_term *term, char kind,
         if (k < each)
             return nevh__fail(
                 &s->report, NEVH_EINVAL,
-                "effect %s, instance %zu: %c[%zu] %s (%zu degrees of freedom, "
+                "effect %s, instance %zu: %s %s (%zu degrees of freedom, "
                 "counted from 0)",
-                term->effect, i, kind, row[k],
+                term->effect, i,
+                nevh__variable_name(s, kind == 'p', row[k], name),
                 row[k] < s->n ? "is read twice" : "is out of range", s->n);
     }
     return NEVH_OK;
@@ -261,7 +263,7 @@ void nevh_system_free(nevh_system *s) {
 
 const char *nevh__variable_name(const nevh_system *s, bool momentum, size_t i,
                                 char text[NEVH__VARIABLE]) {
-    if (s->names)
+    if (s->names && i < s->n)
         snprintf(text, NEVH__VARIABLE, "%s%s", momentum ? "p_" : "",
                  s->names[i]);
     else

@@ -214,7 +214,8 @@ TEST_EACH(invalid_options, 5) {
     double row[] = {1, 1, bad[_i], 1};
     const nevh_options options[] = {
         {.gradient_step = bad[_i]}, {.gradient_steps = row}, {.scale = row}};
-    const char *const words[] = {"gradient step", "gradient step 2", "scale 2"};
+    const char *const words[] = {"gradient step", "gradient step of p[0]",
+                                 "scale of p[0]"};
     nevh_system *s = nevh_system_new(2);
     nevh_system_add(
         s,

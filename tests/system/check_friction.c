@@ -66,7 +66,7 @@ static void assert_bad(const char *effect, const double rates[],
 
 TEST(bad_rates) {
     assert_bad("drag", (double[]){0.1, NAN}, "nan");
-    assert_bad("drag", (double[]){INFINITY, 0.1}, "momentum 0");
+    assert_bad("drag", (double[]){INFINITY, 0.1}, "p[0]");
     assert_bad("drag", (double[]){0, -INFINITY}, "-inf");
     assert_bad("drag", NULL, "NULL");
     assert_bad("", equal, "name");
@@ -77,7 +77,7 @@ TEST(bad_rates) {
     nevh_system_add_friction(s, "b", huge);
     nevh_stepper *m = nevh_stepper_new(s, nevh_verlet, NULL);
     ck_assert_int_eq(nevh_stepper_status(m), NEVH_EINVAL);
-    assert_says(nevh_stepper_message(m), "momentum 1");
+    assert_says(nevh_stepper_message(m), "p[1]");
     nevh_stepper_free(m);
     nevh_system_free(s);
 }

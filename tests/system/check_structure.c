@@ -225,7 +225,7 @@ TEST(invalid_scale) {
         nevh_options options = {.scale = (double[]){1, bad[i]}};
         nevh_stepper *m = nevh_stepper_new(s, nevh_verlet, &options);
         ck_assert_int_eq(nevh_stepper_status(m), NEVH_EINVAL);
-        assert_says(nevh_stepper_message(m), "scale 1");
+        assert_says(nevh_stepper_message(m), "scale of p[0]");
         nevh_stepper_free(m);
     }
     nevh_system_free(s);
