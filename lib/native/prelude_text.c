@@ -25,6 +25,8 @@ int nevh__vector_lanes(void) {
 
 static const char basis[] =
     "typedef __SIZE_TYPE__ size;\n"
+    "_Static_assert(sizeof(double) == sizeof 1.0 && sizeof(size) == "
+    "sizeof(void *), \"double or size_t is another type in CC\");\n"
     "#define INLINE static inline __attribute__((always_inline, unused))\n"
     "#define SLOPE INLINE\n"
     "#define CONST __attribute__((const))\n"

@@ -1,11 +1,18 @@
 /* nevh: scenes.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#define _POSIX_C_SOURCE 200809L
 #include "scene/scene_ensemble_private.h"
 #include <nevh/sweep.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifndef __wasm__
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#endif
 
 enum { MOST_BYTES = 1 << 24 };
 
@@ -140,6 +147,33 @@ static char *read_all(nevh_scene *s, FILE *file, size_t *bytes) {
     return NULL;
 }
 
+#ifdef __wasm__
+static FILE *open_file(const char *path) {
+    return fopen(path, "rb");
+}
+#else
+/* A pipe that nobody writes to is not waited for without end. */
+static bool has_begun(int file) {
+    enum { LONGEST = 10000 }; /* milliseconds */
+    struct pollfd one = {.fd = file, .events = POLLIN};
+    struct stat found;
+    bool pipe = fstat(file, &found) == 0 && S_ISFIFO(found.st_mode);
+    bool begun = !pipe || poll(&one, 1, LONGEST) > 0;
+    errno = begun ? 0 : ETIMEDOUT;
+    return begun && fcntl(file, F_SETFL, O_RDONLY) == 0;
+}
+
+static FILE *open_file(const char *path) {
+    int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    FILE *opened = file >= 0 && has_begun(file) ? fdopen(file, "rb") : NULL;
+    int why = errno;
+    if (file >= 0 && !opened)
+        close(file);
+    errno = why;
+    return opened;
+}
+#endif
+
 nevh_scene *nevh_scene_read(const char *path) {
     return nevh_scene_read_with(path, NULL);
 }
@@ -147,10 +181,12 @@ nevh_scene *nevh_scene_read(const char *path) {
 nevh_scene *nevh_scene_read_with(const char *path,
                                  const nevh_scene_options *options) {
     nevh_scene *s = new_scene(path);
-    FILE *file = s && path ? fopen(path, "rb") : NULL;
+    FILE *file = s && path ? open_file(path) : NULL;
     if (!file) {
         if (s && path)
-            unreadable(s, strerror(errno));
+            unreadable(s, errno == ETIMEDOUT
+                              ? "it is a pipe that nobody writes to"
+                              : strerror(errno));
         else if (s)
             refuse(s, NEVH_EINVAL, "the path is NULL");
         return s;
