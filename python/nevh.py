@@ -1009,6 +1009,11 @@ def _run_plan(plan, t0, t_end, h, times, y, observe, every):
         energy_scale=report.scale, t_reached=reached,
         y_reached=y[0].copy() if np is not None else list(y[0]), sol=None)
     verdict = verdicts[report.verdict]
+    if verdict == "unstable" and not status and report.max > 1:
+        warnings.warn(
+            f"The energy changes by up to {report.max:.2g} times its scale: these "
+            "steps are no measure of the orbit; take a smaller dt, or another "
+            "integrator.", RuntimeWarning, stacklevel=4)
     if verdict == "undecided" and not status and not subject.calls_python:
         result._settle = _settler(plan, t0, h, t_end, start, report)
     else:

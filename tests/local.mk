@@ -199,6 +199,7 @@ dist_check_SCRIPTS = \
 	tests/tool/completion.sh \
 	tests/tool/nevh_new.sh \
 	tests/tool/nevh_effects.sh \
+	tests/tool/nevh_ends.sh \
 	tests/tool/nevh_compare.sh \
 	tests/tool/nevh_scales.sh \
 	tests/tool/nevh_reference.sh \

@@ -23,6 +23,8 @@ tools_nevh_SOURCES = \
 	tools/experiment/row_time.c \
 	tools/experiment/stepper_cache.c \
 	tools/experiment/row_notes.c \
+	tools/experiment/conserved.h \
+	tools/experiment/conserved.c \
 	tools/experiment/time_words.c \
 	tools/experiment/records.c \
 	tools/search/study.h \
@@ -93,8 +95,6 @@ tools_nevh_SOURCES = \
 	tools/ensemble/members.h \
 	tools/ensemble/members.c \
 	tools/inspect/check.c \
-	tools/inspect/conserved.h \
-	tools/inspect/conserved.c \
 	tools/inspect/chaos.c \
 	tools/orbit/section.c \
 	tools/inspect/impact_private.h \

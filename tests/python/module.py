@@ -708,6 +708,18 @@ def test_sweep_of_members_that_fail():
     raised(nevh.Refused, "phy", nevh.sweep, "pendulum", {"phy": [1, 2]})
 
 
+def test_steps_thrown_about_warn():
+    import warnings
+    for H, dt in (("p^2/2 - 1/abs(q)^0.5", 0.05), ("p^2/2 - 1/abs(q - 0.3)^1.5", 0.05),
+                  ("p^2/2 + q^2/2", 0.01)):
+        with warnings.catch_warnings(record=True) as seen:
+            warnings.simplefilter("always")
+            result = nevh.solve(H, (0, 20), [1, 0], "rk4", dt=dt)
+        assert result.success
+        assert len(seen) == (result.energy_error > 1), (H, result.energy_error)
+        assert all(one.category is RuntimeWarning for one in seen)
+
+
 def main():
     names = [name for name in sorted(globals()) if name.startswith("test_")]
     counts = {"passed": 0, "failed": 0, "skipped": 0}

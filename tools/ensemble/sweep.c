@@ -132,9 +132,11 @@ void sweep_count(sweep_job *j, const nevh_sweep_result *r) {
     j->told++;
     j->failed += r->status == NEVH_MEMBER_FAILED;
     j->startless += r->status == NEVH_MEMBER_NO_START;
-    if (r->status != NEVH_MEMBER_DONE && !j->why)
-        j->why = text_print("member %llu: %s", (unsigned long long)r->member,
-                            r->message);
+    if (r->status != NEVH_MEMBER_DONE && !j->why) {
+        j->why = text_print("%s", r->message);
+        j->first = r->member;
+        j->fails = r->status == NEVH_MEMBER_FAILED;
+    }
     show_progress(j);
 }
 
@@ -194,16 +196,22 @@ void sweep_tell_undefined(const sweep_job *j) {
 
 /* Members that are not done are told of, never dropped. */
 static int tell_failures(const sweep_job *j) {
+    char *known = j->fails ? member_why(&j->plan, j->first, j->why)
+                           : text_print("%s", j->why ? j->why : "");
+    char *why =
+        text_print("member %llu: %s", (unsigned long long)j->first, known);
     if (j->failed)
         tool_refuse("%s: %llu of %llu members failed; the first, %s",
                     j->plan.name, (unsigned long long)j->failed,
-                    (unsigned long long)nevh_sweep_members(j->sweep), j->why);
+                    (unsigned long long)nevh_sweep_members(j->sweep), why);
     if (j->startless)
         tool_refuse("%s: %llu of %llu members have no start; %s%s",
                     j->plan.name, (unsigned long long)j->startless,
                     (unsigned long long)nevh_sweep_members(j->sweep),
                     j->failed ? "the first that is not done, " : "the first, ",
-                    j->why);
+                    why);
+    free(known);
+    free(why);
     sweep_tell_undefined(j);
     return j->failed || j->startless ? TOOL_FAILED : TOOL_OK;
 }

@@ -20,7 +20,9 @@ typedef struct {
     ranks ranks;
     size_t threads;
     uint64_t count, failed, startless, told;
-    char *why;          /* of the first that is not done */
+    char *why;          /* of the first that is not done, */
+    uint64_t first;     /* which that is */
+    bool fails;         /* rather than has no start */
     uint64_t undefined; /* members that are done, and an outcome has no value */
     const char *outcome; /* the first of these */
     double begun, shown;

@@ -92,10 +92,13 @@ char *ends_text(const plan *, double ends);
 int plan_refuse_end(const plan *);
 /* Why a run failed: its message, or that the solution ends; to be freed. */
 char *plan_why(const plan *, const char *message);
-/* What is wrong with a run whose energy changed by a good part: that the
-   solution ends, or that a step passed a pole; to be freed, NULL: nothing.
+/* Likewise of a member of the ensemble, where it starts elsewhere alone. */
+char *member_why(const plan *, uint64_t member, const char *message);
+/* What is wrong with a run that ended well, but whose energy changes by a good
+   part, or that passes a pole: that, or that the solution ends; to be freed, NULL:
+   nothing.
    cost  the run again */
-char *plan_doubts(const plan *, const char *integrator);
+char *plan_doubts(const plan *, const char *integrator, double dt);
 /* Where H jumps. */
 void time_notes(const plan *, list *notes);
 

@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "row.h"
 #include <math.h>
+#include <nevh/sweep.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -159,28 +160,50 @@ char *plan_why(const plan *p, const char *message) {
     return ends ? ends : text_print("%s", message);
 }
 
-char *plan_doubts(const plan *p, const char *integrator) {
-    char *text = ends_text(p, plan_ends(p));
-    if (text)
-        return text;
+char *member_why(const plan *p, uint64_t member, const char *message) {
+    double *q = tool_allocate(2 * p->n, sizeof *q), ends = NAN;
+    if (!nevh_scene_member_start(p->scene, member, q, q + p->n))
+        ends = nevh_solution_ends(p->system, p->run->t_start, p->t_end, q,
+                                  q + p->n);
+    free(q);
+    char *text = ends_text(p, ends);
+    return text ? text : text_print("%s", message);
+}
+
+/* Whether a run comes to grief, and when it passes a pole. */
+static bool fails(const plan *p, const char *integrator, double dt,
+                  double *passed, const char **effect) {
+    static const double large = 0.1; /* of the energy */
     nevh_options o = plan_options(p, p->gradients.item[0]);
     nevh_stepper *s = plan_stepper(p, integrator);
     nevh_energy *energy = nevh_energy_new(p->system, &o);
     double stopped, *q = tool_allocate(2 * p->n, sizeof *q);
-    const char *effect;
+    int status = nevh_stepper_status(s);
     memcpy(q, p->q, p->n * sizeof *q);
     memcpy(q + p->n, p->p, p->n * sizeof *q);
-    if (!nevh_stepper_status(s))
-        plan_run(p, s, p->dt[0], q, q + p->n,
-                 &(nevh_observer){nevh_energy_observe, energy, 1}, 1, &stopped);
-    double passed = nevh_energy_passed(energy, &effect);
-    if (isfinite(passed))
-        text = text_print("a step before t = %.6g passes a pole of %s: what "
-                          "follows is not the orbit of H",
-                          passed, effect);
+    plan_set_scale(p, energy);
+    if (!status)
+        status = plan_run(p, s, dt, q, q + p->n,
+                          &(nevh_observer){nevh_energy_observe, energy, 1}, 1,
+                          &stopped);
+    double error = nevh_energy_result(energy, 0).max;
+    *passed = nevh_energy_passed(energy, effect);
     nevh_stepper_free(s);
     nevh_energy_free(energy);
     free(q);
+    return status || isfinite(*passed) || (!p->balance && !(error <= large));
+}
+
+char *plan_doubts(const plan *p, const char *integrator, double dt) {
+    double passed;
+    const char *effect;
+    if (!fails(p, integrator, dt, &passed, &effect))
+        return NULL;
+    char *text = ends_text(p, plan_ends(p));
+    if (!text && isfinite(passed))
+        text = text_print("a step before t = %.6g passes a pole of %s: what "
+                          "follows is not the orbit of H",
+                          passed, effect);
     return text;
 }
 

@@ -74,14 +74,17 @@ static void put_exponents(job *j, const row *r, look *l) {
     free(l->value);
 }
 
-static int fail(job *j, const row *r) {
-    char *known = plan_why(j->plan, nevh_chaos_message(r->chaos));
+static int fail(job *j, const row *r, char *known) {
     char *why = text_print("%s, dt = %g: %s", r->integrator, r->dt, known);
     list_print(&j->result.before, "failed: %s", why);
     tool_refuse("%s: %s", j->plan->name, why);
     free(known);
     free(why);
     return TOOL_FAILED;
+}
+
+static char *why_of(const job *j, const row *r) {
+    return plan_why(j->plan, nevh_chaos_message(r->chaos));
 }
 
 /* An exponent is clear where its error has been small twice: errors that are small
@@ -134,7 +137,7 @@ static int run_history(job *j, row *r) {
     for (size_t i = 0; i < count; i++)
         put_exponents(j, r, &looks[i]);
     free(looks);
-    return status ? fail(j, r) : TOOL_OK;
+    return status ? fail(j, r, why_of(j, r)) : TOOL_OK;
 }
 
 static int run_row(job *j, row *r) {
@@ -147,7 +150,7 @@ static int run_row(job *j, row *r) {
         look l = look_new(j, r);
         put_exponents(j, r, &l);
     }
-    return status ? fail(j, r) : TOOL_OK;
+    return status ? fail(j, r, why_of(j, r)) : TOOL_OK;
 }
 
 static void note_row(job *j, const row *r) {
@@ -268,10 +271,12 @@ static int run_one(job *j, const char *integrator, double dt) {
     row r = {.integrator = integrator,
              .dt = dt,
              .chaos = tool_owned(nevh_chaos_new(p->system, &of))};
+    bool refused = nevh_chaos_status(r.chaos);
+    char *doubts = refused ? NULL : plan_doubts(p, integrator, dt);
     int status =
-        nevh_chaos_status(r.chaos)
-            ? tool_refuse("%s: %s", p->name, nevh_chaos_message(r.chaos))
-            : run_row(j, &r);
+        refused  ? tool_refuse("%s: %s", p->name, nevh_chaos_message(r.chaos))
+        : doubts ? fail(j, &r, doubts)
+                 : run_row(j, &r);
     if (status != TOOL_USAGE) {
         note_row(j, &r);
         table_group(j->result.table);

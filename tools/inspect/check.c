@@ -1,6 +1,6 @@
 /* nevh check: what can be said of a scene before it is run.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "conserved.h"
+#include "experiment/conserved.h"
 #include "experiment/pace.h"
 #include <math.h>
 #include <stdlib.h>

@@ -373,6 +373,10 @@ static int analyse(job *j, const options *o, const char *integrator) {
 static int run_and_analyse(job *j, const options *o, const char *integrator) {
     char *why = NULL;
     int status = run(j, integrator, 1, &why);
+    if (!status)
+        why = plan_doubts(&j->plan, integrator, j->plan.dt[0]);
+    if (why && !status)
+        status = NEVH_EFAILED;
     if (status)
         list_print(&j->words, "%s %s: %s", integrator,
                    status < 0 ? "refused" : "failed", why);

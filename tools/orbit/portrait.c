@@ -49,6 +49,12 @@ static double end_of(const job *j, const options *o) {
     return o->t_end ? p->t_end : fmin(p->t_end, usual);
 }
 
+static char *why_of(const job *j, const orbits_of *o, const char *message) {
+    return j->members.several
+               ? member_why(&j->plan, j->members.number[o->at], message)
+               : plan_why(&j->plan, message);
+}
+
 static void run_orbits(job *j, orbits_of *o) {
     const plan *p = &j->plan;
     nevh_stepper *s = plan_stepper(p, o->integrator);
@@ -63,8 +69,11 @@ static void run_orbits(job *j, orbits_of *o) {
         nevh_observer observer = {take, o, o->every};
         nevh_stepper_reset(s);
         if (plan_run(p, s, p->dt[0], &q, &m, &observer, 1, &stopped) &&
-            !o->failed++)
-            o->status = text_print("failed: %s", nevh_stepper_message(s));
+            !o->failed++) {
+            char *why = why_of(j, o, nevh_stepper_message(s));
+            o->status = text_print("failed: %s", why);
+            free(why);
+        }
     }
     nevh_stepper_free(s);
 }

@@ -182,14 +182,24 @@ static int explain(job *j, int status, const nevh_stepper *s,
     bool told = j->ended != NULL;
     if (isfinite(j->stopped) && !told)
         j->ended = stop_words(j->plan, j->stopped);
+    char *doubts = status || told || j->members.several
+                       ? NULL
+                       : plan_doubts(j->plan, j->integrator, j->plan->dt[0]);
+    if (doubts) {
+        free(j->ended);
+        j->ended = text_print("warning: %s", doubts);
+        tool_refuse("%s: %s", j->plan->name, j->ended);
+        free(doubts);
+    }
     if (!status)
         return TOOL_OK;
     if (j->failed++)
         return TOOL_FAILED;
     if (!*why)
         why = looking ? nevh_sections_message(x) : nevh_stepper_message(s);
-    char *known =
-        j->members.several ? text_print("%s", why) : plan_why(j->plan, why);
+    char *known = j->members.several
+                      ? member_why(j->plan, j->members.number[j->at], why)
+                      : plan_why(j->plan, why);
     free(j->ended);
     j->ended = j->members.several ? text_print("member %zu failed: %s",
                                                j->members.number[j->at], known)

@@ -5,6 +5,7 @@
    first, so that no row changes the orbit.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "trajectory.h"
+#include "experiment/conserved.h"
 #include <float.h>
 #include <math.h>
 #include <stdarg.h>
@@ -201,20 +202,36 @@ static int failed(trajectory *r, double t, const char *message) {
     return TOOL_FAILED;
 }
 
-/* Of a whole run, whether its orbit is one of H. */
+static void warn(trajectory *r, const char *text) {
+    remark(r, "warning: %s", text);
+    fprintf(stderr, "nevh: %s: warning: %s\n", r->plan->name, text);
+}
+
+/* That invariants are none, and what is wrong with an orbit whose energy changes
+   by a good part. */
 static void doubt(trajectory *r) {
-    static const double large = 0.1; /* of the energy */
+    static const double large = 0.1, all = 1; /* of the energy */
+    static const double most_steps = 3e5;     /* of a second run */
     const plan *p = r->plan;
-    static const double most_steps = 3e5; /* of a second run */
-    if (p->balance || r->to.mute || r->to.take ||
-        fabs(p->t_end - p->run->t_start) > most_steps * p->dt[0] ||
-        !(r->changed > large * plan_energy_scale(p)))
+    double scale = plan_energy_scale(p);
+    bool shorter = fabs(p->t_end - p->run->t_start) <= most_steps * p->dt[0];
+    list changed = {0};
+    if (r->to.mute || r->to.take)
         return;
-    char *why = plan_doubts(p, r->integrator);
-    if (why) {
-        remark(r, "warning: %s", why);
-        fprintf(stderr, "nevh: %s: warning: %s\n", p->name, why);
-    }
+    conserved_warn(p, &changed);
+    for (size_t i = 0; i < changed.count; i++)
+        warn(r, changed.item[i]);
+    list_free(&changed);
+    bool suspect = !p->balance && r->changed > large * scale;
+    char *why =
+        suspect && shorter ? plan_doubts(p, r->integrator, p->dt[0]) : NULL;
+    if (suspect && !why && r->changed > all * scale)
+        why = text_print("the energy changes by up to %.2g times its scale: "
+                         "these steps are no measure of the orbit; take a "
+                         "smaller dt, or another integrator",
+                         r->changed / scale);
+    if (why)
+        warn(r, why);
     free(why);
 }
 

@@ -1,12 +1,14 @@
-/* nevh check: whether invariants are conserved.
+/* nevh: whether invariants are conserved.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef NEVH_CONSERVED_H
 #define NEVH_CONSERVED_H
 
-#include "experiment/plan.h"
+#include "plan.h"
 
 /* Those of the scene that are not, on the orbit of a high order at two tolerances,
    over at most 2000 dt. */
 void conserved_words(const plan *, list *notes);
+/* Likewise, but without a word where that is not known. */
+void conserved_warn(const plan *, list *notes);
 
 #endif

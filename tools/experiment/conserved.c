@@ -1,7 +1,7 @@
-/* nevh check: whether what the scene calls invariants is conserved.
+/* nevh: whether what the scene calls invariants is conserved.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "conserved.h"
-#include "experiment/row.h"
+#include "row.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,16 +59,16 @@ static bool measure(const plan *p, size_t count, double size[]) {
     return good;
 }
 
-void conserved_words(const plan *p, list *notes) {
+/* returns  whether it is known */
+static bool tell_changed(const plan *p, list *notes, bool *followed) {
     static const double coarse = 1e-7, fine = 1e-11, rounding = 1e-9;
     size_t count = nevh_scene_shown_count(p->scene, NEVH_INVARIANTS);
     double most = p->run->t_start + MOST_STEPS * p->dt[0];
     double t_end = fmin(p->t_end, most);
     const char *unit = nevh_scene_label(p->scene, "t");
-    if (!count)
-        return;
     double *size = tool_allocate(count, sizeof *size);
     double *one = changes(p, t_end, coarse), *two = changes(p, t_end, fine);
+    *followed = one && two;
     bool known = one && two && measure(p, count, size);
     for (size_t i = 0; known && i < count; i++)
         if (two[i] > 0.5 * one[i] && two[i] > rounding * size[i])
@@ -78,13 +78,24 @@ void conserved_words(const plan *p, list *notes) {
                        "steps are 10000 times smaller.",
                        nevh_scene_shown_name(p->scene, NEVH_INVARIANTS, i),
                        one[i], t_end, *unit ? " " : "", unit, two[i]);
-    if (!known)
-        list_add(notes, one && two
-                            ? "[invariants] were not checked: their sizes "
-                              "near the start are not known."
-                            : "[invariants] were not checked: dop853 "
-                              "does not follow this orbit.");
     free(size);
     free(one);
     free(two);
+    return known;
+}
+
+void conserved_warn(const plan *p, list *notes) {
+    bool followed;
+    if (nevh_scene_shown_count(p->scene, NEVH_INVARIANTS))
+        tell_changed(p, notes, &followed);
+}
+
+void conserved_words(const plan *p, list *notes) {
+    bool followed;
+    if (nevh_scene_shown_count(p->scene, NEVH_INVARIANTS) &&
+        !tell_changed(p, notes, &followed))
+        list_add(notes, followed ? "[invariants] were not checked: their sizes "
+                                   "near the start are not known."
+                                 : "[invariants] were not checked: dop853 "
+                                   "does not follow this orbit.");
 }

@@ -1,0 +1,93 @@
+#!/bin/sh
+# Solutions that end at a finite time, steps past a pole, invariants that are none,
+# scenes that are never written: each command says so.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+# scene NAME COORDINATES EFFECTS REST
+scene() {
+    printf '[coordinates]\n%b\n[effects]\n%b\n%b\n' "$2" "$3" "$4" \
+        >$work/$1.nevh
+}
+# tells PATTERN ARGUMENT...: on stdout or stderr, with any exit status.
+tells() {
+    pattern=$1
+    shift
+    command=$*
+    $limit "$nevh" "$@" >$work/out 2>&1 </dev/null
+    tr '\n' ' ' <$work/out | tr -s ' ' >$work/all
+    grep -q "$pattern" $work/all ||
+        { fails "does not tell '$pattern'"; cat $work/out; }
+}
+run='[run]\nt_end = 20\ndt = 0.01\nintegrators = rk4'
+sections='[sections]\ns = when p_x = 0, rising: x, p_x\n'
+
+scene fall 'x = -1' 'H = p_x^2/2 - x^3/3' "$sections$run"
+scene quartic 'x = 1' 'H = p_x^2/2 - x^4' "$sections$run"
+scene flow 'x = 0.5, 1' 'H = x^2*p_x' "$sections$run"
+scene centre 'x = 1' 'H = p_x^2/2 - 1/x^2' "$sections$run"
+for name in fall:5.15195 quartic:0.92703 flow:2 centre:0.70710; do
+    file=$work/${name%:*}.nevh
+    at="the solution itself ends at t = ${name#*:}"
+    tells "$at" chaos $file --t-end 6
+    tells "$at" frequencies $file
+    tells "$at" section $file
+done
+# The first of the members that fail.
+tells 'the first, member 0: the solution itself ends at t = 5.15195' \
+    sweep $work/fall.nevh --vary 'p_x = range(0, 0.1, 3)'
+tells 'the first, member 0: the solution itself ends at t = 2,' \
+    sweep $work/flow.nevh --vary 'p_x = range(1, 2, 2)'
+
+# Orbits that go on say nothing of that, and have what was asked for.
+scene well 'x = 0.5' 'H = p_x^2/2 + x^2/2 + x^4/4' "$sections$run"
+for one in chaos frequencies section; do
+    exits 0 $one $work/well.nevh
+    cat $work/err >>$work/out
+    lacks 'solution itself|warning'
+done
+
+# Steps past a pole, or thrown about by it.
+scene weak 'x = 1' 'H = p_x^2/2 - 1/abs(x)^0.5' \
+    "${run%rk4}verlet"
+tells 'warning: a step before t = 1.[67]' run $work/weak.nevh --dt 0.05
+tells 'warning: the energy changes by up to 13 times' \
+    run $work/weak.nevh --dt 0.05 --integrators rk4
+
+# Invariants that are none.
+scene planes 'x = 1\ny = 0.3' 'H = (p_x^2 + p_y^2)/2 + (x^2 + y^2)/2' \
+    "[invariants]\nL = x*p_y - y*p_x\nvirial = x*p_x\n$run"
+tells 'warning: virial of .invariants. is not conserved' run $work/planes.nevh
+lacks 'L of .invariants.'
+
+# H that jumps on the way.
+scene steps 'x = 0.3' 'H = p_x^2/2 + x^2/2 + 0.1*floor(3*x)' "$run"
+tells 'smooth no ' check $work/steps.nevh
+scene cut 'x = -1\ny = 0' \
+    'H = (p_x^2 + p_y^2)/2 + (x^2 + y^2)/2 - 0.1*atan2(y, x)' "$run"
+tells 'smooth no ' check $work/cut.nevh
+tells 'smooth yes ' check $work/well.nevh
+
+# Momenta have the names of the scene.
+scene damped 'x = 1' 'H = p_x^2/2 + x^2/2' \
+    "[friction]\none = x: 1e308\nother = x: 1e308\n$run"
+tells 'the rates of friction of p_x add up to inf' run $work/damped.nevh
+
+# A pipe with a writer is a scene; without one it is refused.
+mkfifo $work/pipe 2>/dev/null && {
+    cat $work/well.nevh >$work/pipe &
+    exits 0 check $work/pipe
+    limit="${limit:+timeout 60}"
+    tells 'pipe that nobody writes to' check $work/pipe
+}
+
+# Words of CC that make double another type.
+for words in -Ddouble=float '-Ddouble=long\ double' -D__SIZE_TYPE__=char; do
+    CC="cc $words"
+    export CC
+    XDG_CACHE_HOME=$work/cache exits 0 compare pendulum --t-end 2 \
+        --integrators verlet,gauss4 --native always --repeat 1
+    has '^native: no steps are compiled'
+    unset CC
+done
+exit $status
