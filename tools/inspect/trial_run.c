@@ -56,6 +56,17 @@ static bool is_there(trial *f, double t, size_t k, double move) {
            isfinite(h);
 }
 
+/* Between the state, where H is, and a move to where it is not. */
+static double find_edge(trial *f, double t, size_t k, double away) {
+    enum { HALVINGS = 60 };
+    double near = 0;
+    for (int i = 0; i < HALVINGS; i++) {
+        double middle = near + (away - near) / 2;
+        *(is_there(f, t, k, middle) ? &near : &away) = middle;
+    }
+    return away;
+}
+
 /* Up to two lengths to either side, from near to far. */
 static void look_for_edge(trial *f, double t) {
     for (size_t k = 0; k < 2 * f->plan->n; k++)
@@ -64,9 +75,11 @@ static void look_for_edge(trial *f, double t) {
             double move = (i % 2 ? -part : part) * f->length[k];
             if (part >= f->found->edge || is_there(f, t, k, move))
                 continue;
-            f->found->edge = part;
+            static const double rounding = 1e-9; /* of the length */
+            double edge = find_edge(f, t, k, move), at = f->z[k] + edge;
+            f->found->edge = fabs(edge) / f->length[k];
             f->found->edge_variable = k;
-            f->found->edge_at = f->z[k] + move;
+            f->found->edge_at = fabs(at) < rounding * f->length[k] ? 0 : at;
             f->found->edge_time = t;
         }
 }
@@ -246,13 +259,13 @@ trial_run trial_run_new(const plan *p, bool chaos) {
 static void tell_edge(const plan *p, const trial_run *f, list *notes) {
     size_t k = f->edge_variable;
     if (isfinite(f->edge))
-        list_print(
-            notes,
-            "The domain of H ends at %s%s = %.3g or before: its distance "
-            "from the orbit is %.2g of the length over which H varies, "
-            "near t = %.4g",
-            k < p->n ? "" : "p_", nevh_scene_coordinate(p->scene, k % p->n),
-            f->edge_at, f->edge, f->edge_time);
+        list_print(notes,
+                   "The domain of H ends at %s%s = %.6g: its distance "
+                   "from the orbit is %.2g of the length over which H varies, "
+                   "near t = %.4g",
+                   k < p->n ? "" : "p_",
+                   nevh_scene_coordinate(p->scene, k % p->n), f->edge_at,
+                   f->edge, f->edge_time);
     if (f->failure)
         list_print(notes, "The orbit was integrated up to t = %.6g: %s",
                    p->run->t_start + f->length, f->failure);
