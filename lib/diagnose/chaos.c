@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/chaos_private.h"
 #include "run/stepper_private.h"
+#include <fenv.h>
 #include <math.h>
 #include <nevh/diagnose.h>
 #include <stdio.h>
@@ -294,11 +295,14 @@ nevh_chaos *nevh_chaos_new(const nevh_system *system,
     c->dt = fabs(o->dt);
     c->way = o->dt < 0 ? -1 : 1;
     c->seed = o->seed;
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
     int status = nevh_system_status(system);
     if (status)
         nevh__fail_as(&c->report, &system->report);
     else
         status = plan(c, o);
+    fesetenv(&own);
     c->planned = !status;
     return c;
 }

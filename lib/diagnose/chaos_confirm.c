@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/chaos_private.h"
 #include "run/stepper_private.h"
+#include <fenv.h>
 #include <math.h>
 #include <nevh/diagnose.h>
 #include <stdio.h>
@@ -51,6 +52,8 @@ int nevh_chaos_find(const nevh_system *system, const nevh_options *options,
     nevh_options o = *options;
     o.tolerance = tolerance;
     o.transform = NULL;
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
     nevh_chaos *c =
         nevh_chaos_new(system, &(nevh_chaos_options){.integrator = nevh_dop853,
                                                      .options = &o,
@@ -62,6 +65,7 @@ int nevh_chaos_find(const nevh_system *system, const nevh_options *options,
         status =
             follow(c, t1, seconds > 0 ? seconds : usual_seconds, false, found);
     nevh_chaos_free(c);
+    fesetenv(&own);
     return status;
 }
 

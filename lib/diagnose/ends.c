@@ -1,6 +1,7 @@
 /* nevh: whether a solution ends before its time.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "taylor/orbit_private.h"
+#include <fenv.h>
 #include <math.h>
 #include <nevh/reference.h>
 #include <stdlib.h>
@@ -40,6 +41,8 @@ double nevh_solution_ends(const nevh_system *s, double t0, double t1,
     nevh_timing *timing = timed ? nevh_timing_new(s, t0, t1, q, p) : NULL;
     nevh__report ignored = {0};
     orbit o = {0};
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
     bool damped = rates && nevh_system_friction(s, rates);
     nevh__recurrence *series =
         rates ? nevh__recurrence_new(s, damped ? rates : NULL, timed, &ignored)
@@ -52,6 +55,7 @@ double nevh_solution_ends(const nevh_system *s, double t0, double t1,
         if (start(&o, t0, q, p))
             ends = follow(&o, t1);
     }
+    fesetenv(&own);
     NEVH__FINE(nevh__orbit_clear)(&o);
     nevh__recurrence_free(series);
     nevh_timing_free(timing);

@@ -7,6 +7,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/energy_private.h"
 #include "gradient/field_private.h"
+#include <fenv.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -113,8 +114,11 @@ double nevh__orbit_energy(nevh_field *values, double t, const double q[],
                           const double p[]) {
     motion m = {.values = values, .start = t};
     double *state = nevh__array(4 * values->n, sizeof *state);
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
     bool fine = state && allocate(&m) && follow(&m, t, q, p, state);
     double energy = fine ? energy_of(&m) : 0;
+    fesetenv(&own);
     free(m.now);
     free(state);
     values->report = (nevh__report){0}; /* where values are not finite */

@@ -1,6 +1,7 @@
 /* nevh: references: exact solutions and runs.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/reference_private.h"
+#include <fenv.h>
 #include <float.h>
 #include <math.h>
 #include <nevh/chaos.h>
@@ -326,7 +327,12 @@ nevh_reference *nevh_reference_with(const nevh_system *s,
     r->longest = o->longest;
     r->finest = o->finest;
     r->integrator = o->integrator;
-    if (allocate(r, q, p) && take_kinds(r, o->kind) && make(r) != NEVH_ENOMEM)
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
+    bool made =
+        allocate(r, q, p) && take_kinds(r, o->kind) && make(r) != NEVH_ENOMEM;
+    fesetenv(&own);
+    if (made)
         return r;
     nevh_reference_free(r);
     return NULL;

@@ -2,6 +2,7 @@
    change.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/timing_stretch_private.h"
+#include <fenv.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -392,8 +393,11 @@ nevh_timing *nevh_timing_new(const nevh_system *s, double t0, double t1,
     nevh__time_parts_init(&m->parts, s, q, p);
     m->failed = m->parts.failed;
     m->whole = m->parts.whole;
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
     if (!m->failed && m->parts.count && m->high > m->low)
         make(m);
+    fesetenv(&own);
     if (!m->failed)
         return m;
     nevh_timing_free(m);

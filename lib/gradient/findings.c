@@ -1,6 +1,7 @@
 /* nevh: what can be known of H from its values.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/step_selection_private.h"
+#include <fenv.h>
 #include <float.h>
 #include <math.h>
 #include <nevh/probe.h>
@@ -226,7 +227,11 @@ nevh_probe *nevh_probe_new(const nevh_system *s, const nevh_options *options) {
         return NULL;
     if (options)
         b->options = *options;
-    if (open_probe(b, s) != NEVH_ENOMEM)
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
+    int status = open_probe(b, s);
+    fesetenv(&own);
+    if (status != NEVH_ENOMEM)
         return b;
     nevh_probe_free(b);
     return NULL;

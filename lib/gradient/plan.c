@@ -3,6 +3,7 @@
 #include "gradient/block_private.h"
 #include "gradient/step_selection_private.h"
 #include "gradient/evaluation_private.h"
+#include <fenv.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -270,7 +271,11 @@ nevh_field *nevh_field_new(const nevh_system *s, const nevh_options *options) {
     f->portable = o->portable;
     f->gradient = o->gradient ? o->gradient : nevh_central4;
     f->terms = nevh__array(s->n_terms, sizeof *f->terms);
-    if (f->terms && plan_field(f, o) != NEVH_ENOMEM)
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
+    int status = f->terms ? plan_field(f, o) : NEVH_ENOMEM;
+    fesetenv(&own);
+    if (status != NEVH_ENOMEM)
         return f;
     nevh_field_free(f);
     return NULL;

@@ -384,3 +384,40 @@ TEST(trapping_caller) {
         }
     nevh_scene_free(scene);
 }
+
+static const char *const trapping[] = {
+    "[coordinates]\nx = 1\ny = 0, 1\n[effects]\n"
+    "T = (p_x^2 + p_y^2)/2\nV = -1/sqrt(x^2 + y^2)\n",
+    "[coordinates]\nx = 1\n[effects]\nH = p_x^2/2 + x^4/4\n"
+    "D = x*exp(-((t - 5)/0.01)^2) + 0.1*x*sign(sin(t))\n",
+    "[coordinates]\nx = 1\n[effects]\nH = p_x^2/2 - 1/x^2\n",
+};
+
+static void plan_all(const nevh_system *s, const double q[], const double p[]) {
+    nevh_options o = {.gradient = nevh_central4, .q = q, .p = p};
+    nevh_chaos_finding found;
+    double frequency, growth;
+    nevh_timing_free(nevh_timing_new(s, 0, 10, q, p));
+    nevh_probe_free(nevh_probe_new(s, &o));
+    nevh_field_free(nevh_field_new(s, &o));
+    nevh_reference_free(nevh_reference_new(s, NULL, 0, 2, q, p));
+    nevh_solution_ends(s, 0, 10, q, p);
+    nevh_chaos_find(s, &o, 0, 5, 0.05, &found);
+    nevh_rates *r = nevh_rates_new(s, &o);
+    nevh_rates_at(r, 0, q, p, &frequency, &growth);
+    nevh_rates_free(r);
+}
+
+/* Nor from others that try states where H overflows. */
+TEST_EACH(trapping_caller_plans, sizeof trapping / sizeof *trapping) {
+    static const int trapped = FE_DIVBYZERO | FE_INVALID | FE_OVERFLOW;
+    nevh_scene *scene = parsed(trapping[_i]);
+    double q[2], p[2];
+    ck_assert_int_eq(nevh_scene_start(scene, q, p), NEVH_OK);
+    feclearexcept(FE_ALL_EXCEPT);
+    ck_assert_int_ne(feenableexcept(trapped), -1);
+    plan_all(nevh_scene_system(scene), q, p);
+    int after = fedisableexcept(FE_ALL_EXCEPT);
+    ck_assert_int_eq(after & trapped, trapped);
+    nevh_scene_free(scene);
+}
