@@ -90,7 +90,8 @@ bench-recommend: tools/nevh$(EXEEXT)
 # Wrong and undecided rows are listed in bench/wrong-verdicts, long runs kept in
 # bench/long-runs, to be removed where schemes changed.  LISTS= takes others.
 SHARE = 0.35
-LISTS = $(srcdir)/bench/orbits/list $(srcdir)/bench/textbook/list
+LISTS = $(srcdir)/bench/orbits/list $(srcdir)/bench/textbook/list \
+	$(srcdir)/bench/blind/list
 bench-verdicts: bench/verdicts$(EXEEXT)
 	./bench/verdicts$(EXEEXT) -s $(SHARE) -o bench/wrong-verdicts \
 	  -r bench/long-runs $(srcdir) $(LISTS)
@@ -117,7 +118,8 @@ bench-lanes: all
 	NEVH_SCENES=$(srcdir)/scenes $(SHELL) $(srcdir)/bench/lanes.sh \
 	  ./tools/nevh$(EXEEXT)
 
-EXTRA_DIST += bench/ensembles.py bench/promises.py bench/certain.py bench/lanes.sh bench/speedup.sh bench/recommend.sh bench/answers.sh bench/integrable.sh bench/orbits bench/textbook
+EXTRA_DIST += bench/ensembles.py bench/promises.py bench/certain.py bench/lanes.sh bench/speedup.sh bench/recommend.sh bench/answers.sh bench/integrable.sh bench/orbits bench/textbook \
+	bench/blind bench/kinks
 CLEANFILES += bench/results-answers.csv bench/verdicts$(EXEEXT) bench/wrong-verdicts
 DISTCLEANFILES = bench/long-runs
 .PHONY: bench bench-brouwer bench-certain bench-ensembles bench-fit bench-counts bench-lanes bench-peers bench-recommend bench-speedup \

@@ -1,15 +1,15 @@
 /* nevh bench: how often the verdict on the energy is wrong.
 
-       bench/verdicts [-s SHARE] [-w WORK] [-o WRONG] [-r RUNS] SRCDIR LIST...
+       bench/verdicts [-n] [-s SHARE] [-w WORK] [-o WRONG] [-r RUNS] SRCDIR LIST...
 
    Runs every scheme with fixed steps over the scenes of each list, such as
    bench/orbits/list, with the steps h w and the lengths in periods that stand
    there, asks for the verdict of each, and compares it with what a run of 30 times the length
-   shows, or 480 where that leaves it open or says otherwise.  RUNS is a file that keeps those,
+   shows, or 480 where that leaves it open, or 1920 where it says otherwise.  RUNS is a file that keeps those,
    which do not depend on the rule: it is to be removed where a scheme changed.
    Prints the tables of what was said and what is true, list by list and of all;
    writes wrong and undecided rows to WRONG, each with the command that shows it.  SHARE is the part of all rows to
-   take, by a hash of their names; WORK the seconds that a long run may take on
+   take, by a hash of their names; -n makes long runs and asks for no verdicts; WORK the seconds that a long run may take on
    a machine in the mean.  Fails where a rate is above its goal.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "verdicts_private.h"
@@ -32,7 +32,8 @@ typedef size_t tally[GROUPS][LABELS][SAID];
 
 typedef struct {
     const char *srcdir;
-    double share, work;
+    double share, list_share, work;
+    bool runs_alone;
     FILE *wrong;
     double step[MOST_STEPS], length[MOST_LENGTHS]; /* of the list */
     size_t steps, lengths;
@@ -70,11 +71,12 @@ static void tell_wrong(survey *v, const orbit *o, const subject *s,
             "%.9g  # %s; %s; %s\n",
             scene, nevh_integrator_name(s->scheme), s->plan->gradients.item[0],
             s->dt, s->t_end, verdict, label_name(known->is), evidence);
+    fflush(v->wrong);
     free(evidence);
 }
 
 /* The rule: that of nevh compare. */
-static const char *judge(survey *v, const subject *s) {
+static const char *judge(survey *v, subject *s) {
     row r = {.integrator = nevh_integrator_name(s->scheme),
              .gradient = s->plan->gradients.item[0],
              .scheme = s->scheme,
@@ -85,16 +87,17 @@ static const char *judge(survey *v, const subject *s) {
     row_run(&p, &r);
     v->judging += cpu_seconds() - begin;
     free(r.status);
+    s->scale = r.energy.scale;
     return r.ran ? nevh_verdict_name(r.energy.verdict) : NULL;
 }
 
-static void survey_row(survey *v, const orbit *o, const subject *s,
-                       size_t length) {
+static void survey_row(survey *v, const orbit *o, subject *s, size_t length) {
+    s->scale = 0;
     const long_run *run = long_run_of(s, spans, v->work);
     if (!is_afforded(run, v->work) || run->reached < 1)
         return;
+    const char *verdict = v->runs_alone ? NULL : judge(v, s);
     truth known = truth_of(s, spans, v->work, false);
-    const char *verdict = judge(v, s);
     if (!verdict)
         return;
     if (!is_right(known.is, verdict))
@@ -117,7 +120,8 @@ static bool is_taken(const survey *v, const orbit *o, const subject *s) {
     hash = hash_of(hash, &s->t_end, sizeof s->t_end);
     double more = group_of(s) == RUNGE_KUTTA ? 2 : 1;
     double less = s->dt * o->frequency > 2.6 ? 0.25 : 1;
-    return (double)(hash >> 11) * 0x1p-53 < more * less * o->share * v->share;
+    return (double)(hash >> 11) * 0x1p-53 <
+           more * less * o->share * v->list_share * v->share;
 }
 
 static nevh_stepper *new_stepper(const subject *s) {
@@ -180,11 +184,12 @@ static void survey_plan(survey *v, const orbit *o, const plan *p) {
 }
 
 static int survey_scene(survey *v, const orbit *o) {
-    char *words[] = {"nevh", "compare", (char *)o->file, "--dt", "1e-6", NULL};
+    char *words[] = {"nevh", "compare",  (char *)o->file, "--dt",
+                     "1e-6", "--native", "never",         NULL};
     options given;
     plan p;
     optind = 1;
-    int status = options_read(&given, 5, words);
+    int status = options_read(&given, 7, words);
     if (!status)
         status = plan_make(&p, &given);
     if (!status)
@@ -213,6 +218,8 @@ static int survey_line(survey *v, const char *line) {
         v->steps = read_numbers(line + 6, v->step, MOST_STEPS);
     else if (strncmp(line, "lengths ", 8) == 0)
         v->lengths = read_numbers(line + 8, v->length, MOST_LENGTHS);
+    else if (strncmp(line, "share ", 6) == 0)
+        v->list_share = strtod(line + 6, NULL);
     if (*line == '#' ||
         sscanf(line, "%63s %lf %lf %lf", o.name, &o.frequency, &o.period,
                &o.share) < 3 ||
@@ -232,6 +239,7 @@ static int survey_list(survey *v, const char *name) {
     FILE *f = fopen(name, "r");
     char line[256];
     int status = f ? TOOL_OK : tool_refuse("%s cannot be read", name);
+    v->list_share = 1;
     memset(v->seen, 0, sizeof v->seen);
     memset(v->rows, 0, sizeof v->rows);
     memset(v->wrongs, 0, sizeof v->wrongs);
@@ -355,22 +363,25 @@ static bool print_report(const char *title, tally seen) {
 }
 
 static int usage(void) {
-    fputs("Usage: verdicts [-s SHARE] [-w WORK] [-o WRONG] [-r RUNS] SRCDIR "
-          "LIST...\n",
-          stderr);
+    fputs(
+        "Usage: verdicts [-n] [-s SHARE] [-w WORK] [-o WRONG] [-r RUNS] SRCDIR "
+        "LIST...\n",
+        stderr);
     return TOOL_USAGE;
 }
 
 int main(int argc, char **argv) {
     survey v = {.share = 1, .work = 0.4, .wrong = stdout};
     tally seen = {0};
-    for (int c; (c = getopt(argc, argv, "s:w:o:r:")) != -1;) {
+    for (int c; (c = getopt(argc, argv, "ns:w:o:r:")) != -1;) {
         if (c == 's')
             v.share = strtod(optarg, NULL);
         else if (c == 'w')
             v.work = strtod(optarg, NULL);
         else if (c == 'r')
             runs_open(optarg);
+        else if (c == 'n')
+            v.runs_alone = true;
         else if (c != 'o' || !(v.wrong = fopen(optarg, "w")))
             return usage();
     }

@@ -4,7 +4,7 @@
    swings [G. Benettin, A. Giorgilli, J. Stat. Phys. 74 (1994) 1117-1143] unless
    a run shows otherwise, that of a Runge-Kutta method drifts however it swings
    meanwhile.  What a run of 30 times the length leaves open is asked of runs of
-   120 and 480 times.
+   120 and 480 times, and where a verdict says otherwise of 1920 times.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "verdicts_private.h"
 #include <math.h>
@@ -67,11 +67,11 @@ static shape shape_of(const long_run *r, const long_run *own) {
     s.first = largest(r, 0, WINDOWS / 3);
     s.last = largest(r, 2 * WINDOWS / 3, WINDOWS);
     s.nearest = nearest(r, 2 * WINDOWS / 3, WINDOWS);
-    size_t part = WINDOWS / (size_t)own->spans;
+    size_t part = (size_t)(WINDOWS / own->length);
     s.own = largest(own, 0, part);
     s.own_nearest = nearest(own, part / 2, part);
     s.own_allowed = 16 * own->noise + 8 * own->wandering;
-    s.allowed = 16 * r->noise + 8 * r->wandering * sqrt(r->spans);
+    s.allowed = 16 * r->noise + 8 * r->wandering * sqrt(r->length);
     fit(r, &s);
     return s;
 }
@@ -129,7 +129,7 @@ static label of_runge_kutta(const shape *s) {
 
 static label of_run(const long_run *r, const long_run *own, group g) {
     shape s = shape_of(r, own);
-    if (r->reached < r->spans * (1 - 1e-9))
+    if (r->reached < r->length * (1 - 1e-9))
         return s.own > above(r)             ? IS_UNSTABLE
                : s.largest > 0.5 * above(r) ? WILL_BE_SO
                                             : IS_OPEN;
@@ -187,7 +187,7 @@ static bool is_long_enough(const truth *known, const subject *s) {
    level, as far as the run goes. */
 static bool is_carried(const long_run *r) {
     static const double grown = 100;
-    size_t all = (size_t)(WINDOWS * fmin(1, r->reached / r->spans));
+    size_t all = (size_t)(WINDOWS * fmin(1, r->reached / r->length));
     double met = r->window[0].met, first = 0, last = 0;
     for (size_t i = 0; i < all; i++) {
         met = fmax(met, r->window[i].met);
@@ -204,10 +204,12 @@ truth truth_of(const subject *s, double spans, double work, bool doubted) {
     group g = group_of(s);
     const long_run *shortest = long_run_of(s, spans, work);
     truth known = {of_run(shortest, shortest, g), shortest, shortest};
-    for (int i = 0; i < 2 && (doubted || !is_certain(known.is, g)); i++) {
+    double most = work * (doubted ? 40 : 4);
+    int longer = doubted ? 3 : 2;
+    for (int i = 0; i < longer && (doubted || !is_certain(known.is, g)); i++) {
         spans *= 4;
-        const long_run *r = long_run_of(s, spans, 4 * work);
-        if (!is_afforded(r, 4 * work))
+        const long_run *r = long_run_of(s, spans, most);
+        if (!is_afforded(r, most))
             break;
         known = (truth){of_run(r, shortest, g), r, shortest};
     }

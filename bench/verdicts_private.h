@@ -17,6 +17,7 @@ typedef struct {
 typedef struct {
     uint64_t key;   /* of scene, scheme, gradient, dt, t_end and spans */
     double spans;   /* as long as so many of the row's runs */
+    double length;  /* the same, or fewer where the scene says so */
     double reached; /* so many of them were run before the scheme failed */
     double
         work; /* as nevh_counts_seconds, of the part that is as long as the row, or of
@@ -25,6 +26,7 @@ typedef struct {
     double noise;     /* rounding of one value of H over the scale */
     double wandering; /* by rounding in gradients, over one of the row's runs */
     bool afforded;    /* or the rest says nothing but `work` */
+    bool prepared;    /* to be judged by, in memory alone */
     window window[WINDOWS];
 } long_run;
 
@@ -35,6 +37,7 @@ typedef struct {
     const nevh_integrator *scheme;
     uint64_t scene; /* a hash of its text */
     double dt, t_end;
+    double scale; /* of the row's errors; 0: that of the start */
 } subject;
 
 uint64_t hash_of(uint64_t before, const void *data, size_t size);

@@ -87,20 +87,28 @@ static void probe_wandering(trial *f, double t) {
         f->run->wandering = fmax(f->run->wandering, most / f->scale);
 }
 
-/* As DESIGN says, found here afresh. */
-static void find_scale(trial *f) {
-    const plan *p = f->of->plan;
-    size_t effects = nevh_system_effect_count(p->system);
+/* As DESIGN says, found here afresh: of the start. */
+static double scale_at_start(const subject *s, double effects[],
+                             double *largest) {
+    const plan *p = s->plan;
+    size_t all = nevh_system_effect_count(p->system);
     double given = p->run->energy_scale, most = 0, sum = 0;
-    nevh_field_effects(f->field, p->run->t_start, f->q, f->p, f->effects);
-    for (size_t i = 0; i < effects; i++) {
-        most = fmax(most, fabs(f->effects[i]));
-        sum += f->effects[i];
+    nevh_field_effects(s->field, p->run->t_start, p->q, p->p, effects);
+    for (size_t i = 0; i < all; i++) {
+        most = fmax(most, fabs(effects[i]));
+        sum += effects[i];
     }
-    f->scale = given > 0 ? given : fabs(sum) >= 1e-6 * most ? fabs(sum) : most;
-    if (f->scale == 0)
-        f->scale = 1;
-    f->run->effect = most / f->scale;
+    double scale = given > 0                  ? given
+                   : fabs(sum) >= 1e-6 * most ? fabs(sum)
+                                              : most;
+    *largest = most;
+    return scale == 0 ? 1 : scale;
+}
+
+static void find_scale(trial *f) {
+    double largest;
+    f->scale = scale_at_start(f->of, f->effects, &largest);
+    f->run->effect = largest / f->scale;
 }
 
 static void add(long_run *r, size_t i, double e, size_t samples) {
@@ -121,12 +129,23 @@ static double work_of(const trial *f, nevh_counts before, size_t steps) {
                                          steps);
 }
 
-static void integrate(trial *f, double work) {
+/* Where the scene ends the orbit, the windows are those of the orbit. */
+static bool is_ended(const trial *f, double t, size_t steps, size_t i) {
+    stop here = {.scene = f->of->plan->scene};
+    if (!nevh_scene_stops(here.scene) ||
+        stop_observe(&here, i, t, f->q, f->p) != NEVH_STOPPED)
+        return false;
+    f->run->length = (double)i / (double)steps;
+    return true;
+}
+
+/* Returns whether it ended, and is to be repeated so long. */
+static bool integrate(trial *f, double work) {
     const subject *s = f->of;
     long_run *r = f->run;
     double start = s->plan->run->t_start, h;
     size_t steps = (size_t)llround((s->t_end - start) / s->dt);
-    size_t all = (size_t)((double)steps * r->spans);
+    size_t all = (size_t)((double)steps * r->length + 0.5);
     size_t samples = 0, at = 0, every = all / WINDOWS / PROBES + 1;
     size_t check = steps < CHECKS ? 1 : steps / CHECKS;
     nevh_counts before = nevh_stepper_counts(s->stepper);
@@ -139,10 +158,12 @@ static void integrate(trial *f, double work) {
             probe_wandering(f, t);
         if (nevh_stepper_apply(s->stepper, t, s->dt, f->q, f->p) ||
             nevh_field_value(f->field, 1, &next, f->q, f->p, &h))
-            return;
+            return false;
+        if (i + 1 < all && is_ended(f, next, steps, i + 1))
+            return true;
         double e = (h - f->h0 - nevh_stepper_gain(s->stepper, 0)) / f->scale;
         if (!isfinite(e))
-            return;
+            return false;
         size_t place = i * WINDOWS / all;
         samples = place == at ? samples : 0;
         at = place;
@@ -152,8 +173,22 @@ static void integrate(trial *f, double work) {
             r->work = work_of(f, before, i + 1);
         r->afforded = r->work * r->spans <= work;
         if (!r->afforded)
-            return;
+            return false;
     }
+    return false;
+}
+
+static void begin(trial *f) {
+    const subject *s = f->of;
+    const plan *p = s->plan;
+    double t = p->run->t_start;
+    memcpy(f->q, p->q, p->n * sizeof *f->q);
+    memcpy(f->p, p->p, p->n * sizeof *f->p);
+    memset(f->run->window, 0, sizeof f->run->window);
+    f->run->afforded = true;
+    nevh_stepper_reset(s->stepper);
+    find_scale(f);
+    nevh_field_value(f->field, 1, &t, f->q, f->p, &f->h0);
 }
 
 static void make_run(const subject *s, long_run *r, double work) {
@@ -163,16 +198,49 @@ static void make_run(const subject *s, long_run *r, double work) {
     f.q = rows, f.p = rows + p->n, f.dq = f.p + p->n, f.dp = f.dq + p->n;
     f.effects = tool_allocate(nevh_system_effect_count(p->system) + 1,
                               sizeof *f.effects);
-    memcpy(f.q, p->q, p->n * sizeof *f.q);
-    memcpy(f.p, p->p, p->n * sizeof *f.p);
-    double t = p->run->t_start;
-    r->afforded = true;
-    nevh_stepper_reset(s->stepper);
-    find_scale(&f);
-    if (!nevh_field_value(f.field, 1, &t, f.q, f.p, &f.h0))
-        integrate(&f, work);
+    do
+        begin(&f);
+    while (integrate(&f, work));
     free(f.effects);
     free(rows);
+}
+
+/* Energies at the start that are small by chance are no scale: the row says so. */
+static void rescale(const subject *s, long_run *r) {
+    double *effects = tool_allocate(
+        nevh_system_effect_count(s->plan->system) + 1, sizeof *effects);
+    double largest, start = scale_at_start(s, effects, &largest);
+    float factor = s->scale > 0 ? (float)(start / s->scale) : 1;
+    free(effects);
+    if (fabsf(factor - 1) < 1e-6F)
+        return;
+    for (size_t i = 0; i < WINDOWS; i++) {
+        r->window[i].least *= factor;
+        r->window[i].most *= factor;
+        r->window[i].mean *= factor;
+        r->window[i].met *= factor;
+    }
+    r->effect *= factor, r->noise *= factor, r->wandering *= factor;
+}
+
+/* An orbit that the scene ends on its way to larger energies is judged by what
+   it does before. */
+static void cut_departure(const subject *s, long_run *r) {
+    static const double larger = 4;
+    size_t own = (size_t)(WINDOWS / r->length), end = own;
+    double met = 0;
+    for (size_t i = 0; i < own; i++)
+        met = fmax(met, r->window[i].met);
+    while (end < WINDOWS && r->window[end].met <= larger * met)
+        end++;
+    if (r->length >= r->spans || s->plan->balance || end == WINDOWS ||
+        r->reached < r->length * (1 - 1e-9))
+        return;
+    long_run whole = *r;
+    for (size_t i = 0; i < WINDOWS; i++)
+        r->window[i] = whole.window[i * end / WINDOWS];
+    r->length *= (double)end / WINDOWS;
+    r->reached = r->length;
 }
 
 static uint64_t key_of(const subject *s, double spans) {
@@ -185,6 +253,16 @@ static uint64_t key_of(const subject *s, double spans) {
     return hash_of(key, &spans, sizeof spans);
 }
 
+/* Once the scale of the row is known. */
+static const long_run *prepared(const subject *s, long_run *r) {
+    if (!r->prepared && s->scale > 0) {
+        rescale(s, r);
+        cut_departure(s, r);
+        r->prepared = true;
+    }
+    return r;
+}
+
 bool is_afforded(const long_run *r, double work) {
     return r->afforded && r->work * r->spans <= work;
 }
@@ -194,12 +272,12 @@ const long_run *long_run_of(const subject *s, double spans, double work) {
     for (size_t i = 0; i < count; i++)
         if (runs[i]->key == key &&
             (runs[i]->afforded || runs[i]->work * spans > work))
-            return runs[i];
+            return prepared(s, runs[i]);
     long_run *r = tool_allocate(1, sizeof *r);
-    r->key = key, r->spans = spans;
+    r->key = key, r->spans = r->length = spans;
     make_run(s, r, work);
     keep(r);
     if (file && (fwrite(r, sizeof *r, 1, file) != 1 || fflush(file)))
         exit(tool_refuse("long runs cannot be written"));
-    return r;
+    return prepared(s, r);
 }
