@@ -11,11 +11,21 @@
 static const double tolerance = 1e-10, usual_seconds = 2, usual_budget = 0.5;
 enum { STARTS = 4, LOOKS = 1024, PIECES = 64, LARGEST = 4096 };
 
+/* What gradients of many terms cost, each by a call of its own, above what
+   nevh_counts_seconds takes for those of few. */
+static double spent_on_terms(const nevh_chaos *c, const nevh_counts *counts) {
+    static const double a_term = 8e-8, few = 32;
+    const nevh_system *s = c->tangent ? c->variational->system : c->system;
+    return a_term * fmax(0, (double)s->n_terms - few) *
+           (double)counts->gradients;
+}
+
 static double spent_by(const nevh_chaos *c) {
     nevh_counts counts = nevh_chaos_counts(c);
     size_t n = c->tangent ? 2 * c->n : c->n;
     double steps = c->start[0].clock.done * (double)c->width;
-    return nevh_counts_seconds(&counts, n, c->integrator,
+    return spent_on_terms(c, &counts) +
+           nevh_counts_seconds(&counts, n, c->integrator,
                                nevh_stepper_order(c->stepper), (size_t)steps);
 }
 

@@ -40,6 +40,7 @@ typedef struct {
     size_t nq, np, nv;  /* variables of an instance: coordinates, momenta */
     double *delta;      /* count x nv; NULL without differences */
     nevh__step *steps;  /* nevh__step_rows x nv */
+    size_t first_step;  /* steps of the terms before it */
     size_t *vars;       /* nv variables in the order of the passes */
     nevh__pass pass[2]; /* full order; order 2 */
     uint64_t values;
@@ -83,7 +84,7 @@ struct nevh_field {
     double *length; /* 2n: of an exact gradient of one orbit, found when it was
                        verified; or NULL */
     nevh__planned *terms;
-    size_t n_terms, instances;
+    size_t n_terms, instances, n_steps;
     size_t capacity;   /* columns that the rows below have room for */
     double *workspace; /* holds all below but the Jacobian */
     double *rows;      /* variables and constants of a block */

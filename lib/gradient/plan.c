@@ -75,6 +75,8 @@ static int plan_term(nevh_field *f, const nevh__term_entry *term) {
     plan->delta = nevh__array(decl->count * plan->nv, sizeof *plan->delta);
     plan->steps = nevh__array(rows * plan->nv, sizeof *plan->steps);
     plan->vars = nevh__array(plan->nv, sizeof *plan->vars);
+    plan->first_step = f->n_steps;
+    f->n_steps += rows * plan->nv;
     if (plan->delta && plan->steps && plan->vars)
         return NEVH_OK;
     return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");

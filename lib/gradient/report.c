@@ -9,13 +9,7 @@
 static const double rough = 1e-5;
 
 size_t nevh_field_step_count(const nevh_field *f) {
-    if (!f)
-        return 0;
-    size_t count = 0;
-    for (size_t i = 0; i < f->n_terms; i++)
-        if (f->terms[i].steps)
-            count += nevh__step_rows(&f->terms[i]) * f->terms[i].nv;
-    return count;
+    return f ? f->n_steps : 0;
 }
 
 static nevh_step_report describe(const nevh_field *f, const nevh__planned *term,
@@ -44,14 +38,17 @@ static nevh_step_report describe(const nevh_field *f, const nevh__planned *term,
 nevh_step_report nevh_field_step_report(const nevh_field *f, size_t i) {
     if (!f)
         return (nevh_step_report){0};
-    for (size_t j = 0; j < f->n_terms; j++) {
-        const nevh__planned *term = &f->terms[j];
-        size_t count = term->steps ? nevh__step_rows(term) * term->nv : 0;
-        if (i < count)
-            return describe(f, term, i);
-        i -= count;
+    if (i >= f->n_steps)
+        return (nevh_step_report){.term = ""};
+    size_t low = 0, high = f->n_terms; /* of terms that begin up to i */
+    while (high - low > 1) {
+        size_t middle = low + (high - low) / 2;
+        if (f->terms[middle].first_step <= i)
+            low = middle;
+        else
+            high = middle;
     }
-    return (nevh_step_report){.term = ""};
+    return describe(f, &f->terms[low], i - f->terms[low].first_step);
 }
 
 /* Power of the noise, a sum over variables of (velocity times noise in the

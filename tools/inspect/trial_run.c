@@ -28,6 +28,7 @@ typedef struct {
     nevh_stepper *stepper;
     bool ends;               /* the orbit, or what may be spent, at a time */
     double looks, instances; /* instances: of terms, in H */
+    double slope;            /* evaluations that a gradient of H costs */
 } trial;
 
 /* Derivatives that are taken by one state for its rates, as nevh_rates_at
@@ -43,7 +44,7 @@ static double work_of(const trial *f) {
     double gradients = (double)(step.gradients + noise.gradients) +
                        f->looks * rates_gradients(f->plan->n);
     return (double)(step.values + value.values + noise.values) +
-           gradients * f->instances;
+           gradients * f->slope;
 }
 
 /* H at the state, variable k moved. */
@@ -162,9 +163,9 @@ static void run(trial *f) {
 }
 
 /* The indicators of nevh chaos, of H itself; where the run is too short for them,
-   of a longer one, unless the orbit ends. */
+   of a longer one, unless the orbit ends or H is large. */
 static void judge(const trial *f) {
-    static const double longer = 8;
+    static const double longer = 8, little = 0.5;
     const plan *p = f->plan;
     trial_run *found = f->found;
     nevh_options o = plan_options(p, p->gradients.item[0]);
@@ -176,8 +177,10 @@ static void judge(const trial *f) {
     o.gradient_step = 0;
     o.scale = f->length;
     o.transform = NULL;
-    nevh_chaos_find(p->system, &o, begin, begin + length, 0, &found->chaos);
-    if (found->chaos.report.verdict == NEVH_EARLY && !f->ends &&
+    double seconds = f->slope > large ? little : 0;
+    nevh_chaos_find(p->system, &o, begin, begin + length, seconds,
+                    &found->chaos);
+    if (found->chaos.report.verdict == NEVH_EARLY && !f->ends && !seconds &&
         !nevh_chaos_find(p->system, &o, begin, begin + longer * length, 0,
                          &more))
         found->chaos = more;
@@ -208,6 +211,14 @@ static nevh_stepper *new_stepper(const trial *f) {
     return nevh_stepper_new(p->system, nevh_dop853, &o);
 }
 
+/* An effect of many is a call of its own, which costs as much as so many of its
+   instances. */
+static double cost_of_gradient(const trial *f) {
+    static const double a_call = 8, few = 100;
+    double effects = (double)nevh_system_effect_count(f->plan->system);
+    return f->instances + a_call * fmax(0, effects - few);
+}
+
 static double count_instances(const trial *f) {
     const plan *p = f->plan;
     double t = p->run->t_start, h;
@@ -232,6 +243,7 @@ trial_run trial_run_new(const plan *p, bool chaos) {
     f.gradient = nevh_field_new(p->system, &given);
     f.scale = plan_energy_scale(p);
     f.instances = count_instances(&f);
+    f.slope = cost_of_gradient(&f);
     if (take_lengths(&f, &o)) {
         o.scale = f.length;
         f.fastest.rates = nevh_rates_new(p->system, &o);
