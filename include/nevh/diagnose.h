@@ -90,7 +90,10 @@ typedef enum {
                           symplectic methods and of those that preserve the
                           energy, H autonomous [Hairer, Lubich, Wanner,
                           Geometric Numerical Integration, chapter IX] */
-    NEVH_THEORY_LOSES  /* a drift: each step adds its error */
+    NEVH_THEORY_LOSES, /* a drift: each step adds its error */
+    NEVH_THEORY_ROUGH  /* nothing, where it would be KEEPS: formulas with abs,
+                          min, max, sign, floor or mod of coordinates or momenta
+                          have kinks or jumps, and no modified energy is known */
 } nevh_theory;
 
 /* Errors are of H(t) - H(0), or of the balance, relative to `scale`: |H0|
@@ -144,8 +147,9 @@ typedef struct {
    that is `times` as long and begins alike; INFINITY: there will be none that
    is longer.
 
-   OPEN where the energies met grow a hundredfold, and the error no faster
-                 than they: UNDECIDED, for it grows with the motion
+   OPEN where the energies met grow a hundredfold, or fourfold and steadily,
+                 and the error no faster than they: UNDECIDED, for it grows with
+                 the motion
    max > limit   UNSTABLE for theory LOSES, or beyond all measure; else, once
                  times >= 16, BOUNDED where the error comes back and is level,
                  else UNSTABLE
@@ -153,11 +157,13 @@ typedef struct {
                  never DRIFTS; of LOSES UNDECIDED, for the drift is hidden
    LOSES         DRIFTS where the slope is above four times its error, or the
                  error never comes back
-   KEEPS, OPEN   BOUNDED where the last fifth is at most twice the first, or,
+   KEEPS, OPEN, ROUGH
+                 BOUNDED where the last fifth is at most twice the first, or,
                  once times >= 4, where growth has nearly ended; of errors above
                  3 % of the limit, once times >= 8.  Once times >= 16, DRIFTS
                  along a line that lasts (of KEEPS, one that the gradients may
-                 bring), RANDOM_WALK where growth is slower and lasts
+                 bring, of OPEN and ROUGH with a straightness above 0.95),
+                 RANDOM_WALK where growth is slower and lasts
    NONE          BOUNDED as for OPEN, DRIFTS along a line, else RANDOM_WALK, of
                  the run as it is
    UNDECIDED     where half of the largest error was made so, unless BOUNDED: steps that pass over changes of H are
@@ -196,13 +202,16 @@ typedef struct {
 } nevh_judged_run;
 
 /* Where the verdict on a run is UNDECIDED, that of a longer one: from the start
-   again, to 2, 4 ... 32 lengths, or 512 that take a second, until the verdict is
+   again, to 2, 4 ... 32 lengths, or 2048 that take a second, until the verdict is
    another one or the seconds allowed are spent.  BOUNDED is confirmed in the same way: by as many lengths
    as take a tenth of a second, up to 128, and where neighbours may part by 4 that
    take a second.  What is then still open is judged by as much as was seen, as are runs
    that are too long to be followed to 4 lengths.  UNSTABLE of a longer run says
    nothing of a run whose errors are below 1 % of the limit, or, of H that
-   depends on time, of one that met a quarter of its energies: UNDECIDED.
+   depends on time, of one that met a quarter of its energies: UNDECIDED, as are
+   errors of the latter that grow no faster than the energies.  Errors of the run
+   itself that rounding explains stay BOUNDED, and so do level ones of an orbit
+   that `stop` ends at energies four times as large.
    stepper  as it took the run, of width 1; begins afresh
    energy   as of the run (nevh_energy_expect, nevh_energy_follow), but new
    report   in and out: nevh_energy_result of the run; of the longer one, whose

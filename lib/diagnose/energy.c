@@ -186,22 +186,6 @@ int nevh_energy_follow(nevh_energy *e, const nevh_stepper *s) {
     return NEVH_OK;
 }
 
-static nevh_theory theory_of(const nevh_stepper *s) {
-    const nevh_integrator *scheme = s->work.integrator;
-    const nevh_system *system = s->work.system;
-    bool friction = nevh_system_friction(system, NULL);
-    bool autonomous = nevh_system_traits(system) & NEVH_AUTONOMOUS;
-    nevh_claim symplectic = nevh_integrator_symplectic(scheme);
-    bool keeps = symplectic == NEVH_YES || symplectic == NEVH_EXTENDED ||
-                 nevh_integrator_preserves_energy(scheme) == NEVH_YES;
-    if (!keeps && nevh_integrator_symmetric(scheme) == NEVH_NO)
-        return NEVH_THEORY_LOSES;
-    if (friction && !autonomous) /* which takes energy for ever */
-        return NEVH_THEORY_LOSES;
-    return keeps && autonomous && !friction ? NEVH_THEORY_KEEPS
-                                            : NEVH_THEORY_OPEN;
-}
-
 /* How far rounding moves derivatives by differences, and how far these are
    from derivatives of any H, relative to them. */
 static void find_blur(const nevh_field *f, double *noise, double *blur) {
@@ -229,7 +213,7 @@ int nevh_energy_expect(nevh_energy *e, const nevh_stepper *s) {
     int status = check_stepper(e, s, "to expect");
     if (status)
         return status;
-    e->theory = theory_of(s);
+    e->theory = nevh__theory_of(s);
     for (size_t lane = 0; lane < e->width; lane++)
         expect_in(e, lane, s);
     return NEVH_OK;

@@ -21,6 +21,9 @@ void nevh__energy_lane_copy(nevh_energy *, size_t from, size_t to);
 /* The lane's next observation is its first. */
 void nevh__energy_restart(nevh_energy *, size_t lane);
 
+/* What theory says of the steps of that stepper, planned. */
+nevh_theory nevh__theory_of(const nevh_stepper *);
+
 /* The largest energy of the motion, of a term of a field for values, along the
    orbit from there on: neither constants nor where energies are counted from change
    it.  0 where the orbit cannot be followed, or grows without end. */

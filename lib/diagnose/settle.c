@@ -14,7 +14,7 @@ static const double usual = 8;
 /* Seconds that nobody minds for a verdict to be confirmed, and lengths. */
 static const double cheap = 0.1, confirmed = 128;
 /* Those that what is open is worth beyond that. */
-static const double quick = 1, open = 512;
+static const double quick = 1, open = 2048;
 
 /* Of the energies that the run itself met: what is driven has left its orbit. */
 static const double grown = 4;
@@ -52,8 +52,7 @@ typedef struct {
     double enough; /* lengths that a verdict takes, unless it is UNSTABLE */
     double own;    /* the largest error of the run itself */
     bool decided;
-    double most_met; /* energies above are those of another motion */
-    bool departs;    /* such were met */
+    nevh_energy_report before; /* at the last length that was judged */
     nevh_energy_report report;
 } longer_run;
 
@@ -62,8 +61,10 @@ typedef struct {
    longer run explored more, and is level since. */
 static bool is_confirmed(const longer_run *l, double times) {
     static const double slow = 2.5, level = 1.3, few = 16, many = 256;
+    static const double ending = 0.2, ended_before = 0.5; /* powers of t */
     const nevh_energy_report *r = &l->report;
-    bool ended = r->theory == NEVH_THEORY_KEEPS && r->rate[0] < level - 1 &&
+    bool ended = r->theory == NEVH_THEORY_KEEPS && r->rate[0] < ending &&
+                 r->rate[1] < ended_before &&
                  r->last_fifth <= level * r->first_fifth;
     return r->max <= r->rounding || r->max > r->limit ||
            r->max <= l->own * fmax(2, sqrt(times) / slow) ||
@@ -89,6 +90,27 @@ static nevh_verdict judge_last(const longer_run *l, double times) {
     return verdict == NEVH_UNDECIDED && keeps && level ? NEVH_BOUNDED : verdict;
 }
 
+/* An orbit that the caller stops on its way to larger energies, which is its end:
+   errors there say nothing of those before. */
+static bool leaves(const nevh_energy_report *own, const longer_run *l,
+                   int status) {
+    return own->theory == NEVH_THEORY_KEEPS && status == NEVH_STOPPED &&
+           !nevh_energy_status(l->energy) && !l->decided &&
+           l->report.met > grown * own->met && own->max <= own->limit;
+}
+
+/* As far as such an orbit was judged before. */
+static nevh_verdict judge_before(const nevh_energy_report *own,
+                                 const longer_run *l) {
+    static const double small = 0.03; /* of the limit: steps are short */
+    const nevh_energy_report *last = l->before.samples ? &l->before : own;
+    bool level = own->max <= small * own->limit &&
+                 nevh_energy_verdict(own, INFINITY) == NEVH_BOUNDED &&
+                 nevh_energy_verdict(last, INFINITY) == NEVH_BOUNDED &&
+                 last->met <= grown * own->met && last->max <= 2 * own->max;
+    return level ? NEVH_BOUNDED : NEVH_UNDECIDED;
+}
+
 /* Of a driven run that is left undecided because its motion grows when it is
    continued: a line of its own. */
 static nevh_verdict judge_own(const nevh_energy_report *own,
@@ -109,6 +131,7 @@ static int ask(void *data, size_t step, double t, const double q[],
         return status;
     l->report = nevh_energy_result(l->energy, 0);
     l->report.verdict = nevh_energy_verdict(&l->report, l->times);
+    l->before = l->report;
     nevh_verdict now = l->report.verdict;
     bool early = now != NEVH_UNSTABLE && l->times < l->enough * (1 - 1e-9);
     early = early || now == NEVH_RANDOM_WALK ||
@@ -172,6 +195,28 @@ static void end(longer_run *l, int status) {
         r->verdict = NEVH_UNSTABLE;
     else
         r->verdict = judge_last(l, r->span / fabs(l->span));
+    if (failed && r->verdict == NEVH_BOUNDED && r->max > r->rounding)
+        r->verdict = NEVH_UNDECIDED;
+}
+
+/* Of a run that met larger energies than before: the error relative to them. */
+static bool is_carried(const nevh_energy_report *r) {
+    static const double level = 2;
+    return r->relative[1] <= level * r->relative[0];
+}
+
+/* What only rounding shows is no more than that. */
+static bool is_rounding(const nevh_energy_report *own) {
+    static const double small = 1e-3;
+    return own->theory != NEVH_THEORY_LOSES && own->max <= own->rounding &&
+           own->rounding < small;
+}
+
+/* A level error of a driven run, where larger energies bring rounding later. */
+static bool only_rounding_grows(const nevh_energy_report *own,
+                                const nevh_energy_report *longer) {
+    return longer->max <= longer->rounding &&
+           nevh_energy_verdict(own, INFINITY) == NEVH_BOUNDED;
 }
 
 int nevh_verdict_settle(nevh_stepper *s, nevh_energy *energy,
@@ -200,13 +245,25 @@ int nevh_verdict_settle(nevh_stepper *s, nevh_energy *energy,
     bool beyond = !(report->max <= fmax(report->limit, report->rounding));
     bool driven = report->theory == NEVH_THEORY_OPEN && !beyond &&
                   l.report.met > grown * report->met;
+    bool grows =
+        l.report.verdict == NEVH_RANDOM_WALK || l.report.verdict == NEVH_DRIFTS;
+    bool rounded = is_rounding(report) ||
+                   (driven && only_rounding_grows(report, &l.report));
+    bool left = leaves(report, &l, status);
+    nevh_verdict before = judge_before(report, &l);
     nevh_verdict line = judge_own(report, &l.report);
     *report = l.report;
+    if (driven && grows && is_carried(report))
+        report->verdict = NEVH_UNDECIDED;
     if (report->verdict == NEVH_UNDECIDED)
         report->verdict = line;
     if (beyond && report->verdict != NEVH_BOUNDED)
         report->verdict = NEVH_UNSTABLE;
     if ((small || driven) && report->verdict == NEVH_UNSTABLE)
         report->verdict = NEVH_UNDECIDED;
+    if (left)
+        report->verdict = before;
+    if (rounded && report->verdict == NEVH_UNDECIDED)
+        report->verdict = NEVH_BOUNDED;
     return NEVH_OK;
 }

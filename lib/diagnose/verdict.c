@@ -9,6 +9,8 @@ static const double significant = 4;     /* of a slope, its own errors */
 static const double nearly_ended = 0.3;  /* a power of t */
 static const double along_a_line = 0.75; /* likewise */
 static const double no_walk = 2;         /* likewise: faster than a drift */
+static const double straight =
+    0.95; /* of a line that theory knows nothing of */
 static const double lasting =
     0.3; /* of the largest error: is never made good */
 /* Of the limit: above, steps may not resolve the orbit. */
@@ -26,9 +28,13 @@ static bool has_slope(const nevh_energy_report *r) {
            fabs(r->drift) > significant * r->drift_error;
 }
 
-/* The line makes most of the error. */
+/* The line makes most of the error; where theory says nothing, a random walk
+   leans to one side as well. */
 static bool is_line(const nevh_energy_report *r) {
-    return has_slope(r) && fabs(r->drift) * r->span > r->max / 2;
+    bool open = r->theory == NEVH_THEORY_OPEN || r->theory == NEVH_THEORY_ROUGH;
+    bool leans = r->straightness <= straight || r->rate[2] < along_a_line / 2;
+    return has_slope(r) && fabs(r->drift) * r->span > r->max / 2 &&
+           !(open && leans);
 }
 
 /* Neither larger than early on, by more than that, nor about to grow. */
@@ -39,11 +45,14 @@ static bool is_flat(const nevh_energy_report *r, double allowed) {
            (saturates && r->last_fifth <= allowed * r->first_fifth);
 }
 
-/* A drive makes the motion grow, and the error with it. */
+/* A drive makes the motion grow, and the error with it: a hundredfold, or less and
+   steadily, as in a resonance. */
 static bool is_carried(const nevh_energy_report *r) {
-    static const double much = 100, small = 0.5;
+    static const double much = 100, some = 4, small = 0.5;
     double before = r->relative[0], after = r->relative[1];
-    return r->theory == NEVH_THEORY_OPEN && r->grown > much &&
+    bool steadily = fmin(r->rate[0], r->rate[1]) > along_a_line;
+    return r->theory == NEVH_THEORY_OPEN &&
+           r->grown > (steadily ? some : much) &&
            r->last_fifth > sqrt(r->grown) * r->first_fifth &&
            after <= fmin(growth_allowed * before, small);
 }

@@ -193,6 +193,16 @@ static nevh__tape_operand operand(const plan *p, int node) {
     return (nevh__tape_operand){.kind = n->kind, .by = r->by, .at = at};
 }
 
+bool nevh__tape_breaks(const nevh__tape *tape) {
+    for (size_t i = 0; i < tape->length; i++) {
+        const nevh__instruction *c = &tape->code[i];
+        if (!nevh__operation_is_smooth(c->operation) &&
+            ((c->a.by | c->b.by) & (NEVH__BY_Q | NEVH__BY_P)))
+            return true;
+    }
+    return false;
+}
+
 bool nevh__operation_is_smooth(unsigned operation) {
     switch (operation) {
     case NEVH__ABS:

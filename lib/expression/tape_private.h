@@ -134,6 +134,8 @@ void nevh__tape_free(nevh__tape *);
 /* Whether the result depends on a variable, as far as the operations left
    tell. */
 bool nevh__tape_reads(const nevh__tape *, nevh__variable, size_t k);
+/* Whether an operation with kinks or jumps is one of coordinates or momenta. */
+bool nevh__tape_breaks(const nevh__tape *);
 /* One more than the largest k that the builder was asked for, read or not: what
    a term must declare as nq, np, nc. */
 size_t nevh__tape_count(const nevh__tape *, nevh__variable);

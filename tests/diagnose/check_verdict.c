@@ -3,6 +3,7 @@
 #include "driven.h"
 #include "support.h"
 #include <math.h>
+#include <nevh/scene.h>
 #include <string.h>
 
 static double coordinate(double t, const double q[], const double p[],
@@ -137,6 +138,52 @@ TEST(growth_of_the_motion) {
     ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, INFINITY), NEVH_UNDECIDED);
 }
 
+/* A resonance, whose energies grow with the square of the time, and the error with
+   them or faster; and energies that grow unsteadily. */
+TEST(resonance) {
+    nevh_energy_report r = {.samples = 1000,
+                            .max = 0.25,
+                            .rms = 0.1,
+                            .first_fifth = 1e-2,
+                            .last_fifth = 0.25,
+                            .limit = 1e3,
+                            .met = 1e4,
+                            .rate = {1.98, 1.98, 1.98},
+                            .early = 4e-3,
+                            .grown = 25,
+                            .relative = {1e-5, 1e-5}};
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, INFINITY), NEVH_UNDECIDED);
+    r.rate[0] = r.rate[1] = r.rate[2] = 0.98;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, INFINITY), NEVH_UNDECIDED);
+    r.relative[1] = 1e-4;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, INFINITY), NEVH_RANDOM_WALK);
+    r.relative[1] = 1e-5;
+    r.rate[1] = 0.3;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, INFINITY), NEVH_RANDOM_WALK);
+}
+
+/* A walk that leans to one side is no drift where theory expects none. */
+TEST(leaning_walk) {
+    nevh_energy_report r = {.samples = 20000,
+                            .max = 1e-3,
+                            .first_fifth = 2e-4,
+                            .last_fifth = 1e-3,
+                            .limit = 1,
+                            .met = 1,
+                            .rate = {1, 0.9, 0.8},
+                            .early = 1e-4,
+                            .grown = 1,
+                            .span = 1000,
+                            .drift = 8e-7,
+                            .drift_error = 1e-7,
+                            .straightness = 0.7};
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, 16), NEVH_RANDOM_WALK);
+    ck_assert_int_eq(judge(r, NEVH_THEORY_ROUGH, 16), NEVH_RANDOM_WALK);
+    ck_assert_int_eq(judge(r, NEVH_THEORY_LOSES, 16), NEVH_DRIFTS);
+    r.straightness = 0.97;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, 16), NEVH_DRIFTS);
+}
+
 /* An error far above all energies is not left open when no run is longer. */
 TEST(far_above_the_energies) {
     nevh_energy_report r = {.samples = 1000,
@@ -175,6 +222,51 @@ TEST(what_theory_knows) {
     ck_assert_int_eq(theory_of(&driven_pendulum, nevh_verlet),
                      NEVH_THEORY_OPEN);
     ck_assert_int_eq(theory_of(&driven_pendulum, nevh_rk4), NEVH_THEORY_LOSES);
+}
+
+static nevh_theory theory_in_scene(const char *effects,
+                                   const nevh_integrator *scheme) {
+    nevh_scene *scene = scene_with("x = 1\ny = 2", effects);
+    const nevh_system *s = nevh_scene_system(scene);
+    double q[2], p[2];
+    nevh_scene_start(scene, q, p);
+    nevh_stepper *m =
+        nevh_stepper_new(s, scheme, &(nevh_options){.q = q, .p = p});
+    nevh_energy *e = nevh_energy_new(s, NULL);
+    ck_assert_msg(!nevh_energy_expect(e, m), "%s", nevh_energy_message(e));
+    nevh_energy_observe(e, 0, 0, q, p);
+    nevh_theory theory = nevh_energy_result(e, 0).theory;
+    nevh_energy_free(e);
+    nevh_stepper_free(m);
+    nevh_scene_free(scene);
+    return theory;
+}
+
+/* Kinks and jumps of formulas, in coordinates or momenta, leave no modified
+   energy; such of numbers or of time alone are none. */
+TEST(kinks) {
+    static const char *const rough[] = {
+        "K = (p_x^2+p_y^2)/2\nV = abs(x)+y^2",
+        "K = (p_x^2+p_y^2)/2\nV = x^2+floor(y)",
+        "K = (p_x^2+p_y^2)/2\nV = max(x, y)^2",
+        "K = (p_x^2+p_y^2)/2\nV = mod(x, 1)*(1-mod(x, 1))",
+        "K = abs(p_x)+p_y^2/2\nV = x^2+y^2"};
+    static const char *const smooth[] = {
+        "K = (p_x^2+p_y^2)/2\nV = abs(-2)*x^2+y^4",
+        "K = (p_x^2+p_y^2)/2\nV = exp(x)+hypot(x, y)"};
+    for (size_t i = 0; i < sizeof rough / sizeof *rough; i++) {
+        ck_assert_int_eq(theory_in_scene(rough[i], nevh_verlet),
+                         NEVH_THEORY_ROUGH);
+        ck_assert_int_eq(theory_in_scene(rough[i], nevh_rk4),
+                         NEVH_THEORY_LOSES);
+    }
+    for (size_t i = 0; i < sizeof smooth / sizeof *smooth; i++)
+        ck_assert_int_eq(theory_in_scene(smooth[i], nevh_verlet),
+                         NEVH_THEORY_KEEPS);
+    ck_assert_int_eq(theory_in_scene("K = (p_x^2+p_y^2)/2\nV = "
+                                     "x^2+y^2+x*abs(sin(t))",
+                                     nevh_verlet),
+                     NEVH_THEORY_OPEN);
 }
 
 /* A stepper of another system tells nothing of this one. */

@@ -120,6 +120,10 @@ verdicts midpoint=undecided
 exits 0 compare $textbook/tilted-quartic.nevh --integrators midpoint --dt 0.25 \
     --t-end 26
 has '^midpoint at dt = 0\.25: the energy error is at most 3\.3e-03 in the run, but'
+# To infinity, where nothing but the error ends the run.
+compares $textbook/tilted-quartic.nevh --integrators position-verlet --dt 0.25 \
+    --t-end 31.5
+verdicts 'position-verlet=(undecided|unstable)'
 compares $textbook/driven-duffing.nevh --integrators gauss8,rkn14a --dt 0.33613 \
     --t-end 28.57
 verdicts 'gauss8=(undecided|random-walk)'
@@ -137,6 +141,43 @@ verdicts verlet=bounded gauss4=bounded
 compares $textbook/henon-heiles-edge.nevh --integrators blanes-moan4 --dt 0.1 \
     --t-end 100
 verdicts blanes-moan4=bounded
+
+# An orbit that `stop` ends, on its way out, is judged by what it did before.
+blind=${srcdir:-.}/bench/blind
+compares $blind/hh-escape.nevh --integrators pefrl,blanes-moan4,rk4 \
+    --gradient exact --dt 0.088 --t-end 33.5
+verdicts pefrl=bounded blanes-moan4=bounded rk4=drifts
+exits 0 compare $blind/hh-escape.nevh --integrators pefrl --gradient exact \
+    --dt 0.088 --t-end 33.5
+has 'is continued until t = .*, where its energies are far larger'
+compares $blind/hh-escape.nevh --integrators symplectic-euler-b --gradient exact \
+    --dt 0.70588 --t-end 33.18
+verdicts 'symplectic-euler-b=(undecided|unstable)'
+
+# Potentials with kinks keep no modified energy: errors that are level for some
+# periods grow tenfold later, and implicit equations fail.  Level ones stay so.
+scene 'x = 1\np_x = 0.4' 'K = p_x^2/2\nV = abs(x)' 't_end = 30\ndt = 0.15' wedge
+compares $work/wedge.nevh --integrators rkn14a,verlet --gradient exact
+verdicts 'rkn14a=(undecided|unstable)' verlet=bounded
+scene 'x = 1\ny = 0.3' 'K = (p_x^2+p_y^2)/2\nV = abs(x)+abs(y)+(x-y)^2/2' \
+    't_end = 60\ndt = 0.15' wedges
+compares $work/wedges.nevh --integrators gauss6,gauss8 --gradient exact
+verdicts gauss6=undecided gauss8=undecided
+
+# In a resonance the error grows with the square of the time, as the energies do.
+scene 'x = 1\ny = 0' \
+    'K = (p_x^2+p_y^2)/2\nV = (x^2+y^2)/2\nD = -0.1*x*cos(t)+0.1*y*sin(t)' \
+    't_end = 100\ndt = 0.1' resonance
+compares $work/resonance.nevh --integrators pefrl,gauss4 --gradient exact
+verdicts pefrl=undecided gauss4=undecided
+exits 0 compare $work/resonance.nevh --integrators pefrl --gradient exact
+has '^pefrl at dt = 0\.1: the energies of the motion grow until t = '
+
+# A pulse that shorter runs did not meet: none foretells the steps that it takes.
+scene 'x = 1' 'K = p_x^2/2\nV = x^2/2\nD = -5*x*exp(-((t-500)/0.5)^2)' \
+    't_end = 1000\ndt = 0.1' pulse
+exits 0 compare $work/pulse.nevh --integrators euler --gradient exact
+lacks 'would keep its error'
 
 # A drift below the noise of differences.
 compares kepler --integrators rk4 --dt 0.002 --t-end 20

@@ -237,8 +237,10 @@ static double level_until(const plan *p, const row rows[], size_t count) {
     double least = INFINITY, start = p->run->t_start;
     for (size_t i = 0; i < count; i++)
         if (verdict_is(&rows[i], NEVH_BOUNDED))
-            least = fmin(least,
-                         fmax(1, rows[i].followed) * (rows[i].t_end - start));
+            least = fmin(
+                least,
+                (verdict_leaves(&rows[i]) ? 1 : fmax(1, rows[i].followed)) *
+                    (rows[i].t_end - start));
     return start + least;
 }
 

@@ -60,10 +60,10 @@ static void tell_open_run(const plan *p, const row *r, const char *subject,
 }
 
 /* The error grows because the motion does. */
-static bool is_carried(const nevh_energy_report *e) {
-    static const double much = 10;
-    return e->theory == NEVH_THEORY_OPEN && e->grown > much &&
-           e->relative[1] <= 0.5;
+static bool is_carried(const row *r, const nevh_energy_report *e) {
+    static const double more = 4;
+    return e->theory == NEVH_THEORY_OPEN && e->relative[1] <= 0.5 &&
+           (e->grown > more || e->met > more * r->energy.met);
 }
 
 static bool is_hidden(const nevh_energy_report *e) {
@@ -83,7 +83,7 @@ void verdict_tell_open(const plan *p, const row rows[], size_t count,
                    "%.1e, is that of steps which pass over it: it says nothing "
                    "of the scheme; take a shorter step.",
                    subject, r->energy.max);
-    else if (is_carried(e))
+    else if (is_carried(r, e))
         list_print(
             words,
             "%s: the energies of the motion grow%s%s, and the error with "
@@ -112,6 +112,13 @@ void verdict_tell_open(const plan *p, const row rows[], size_t count,
     free(unit);
 }
 
+/* To a motion of far larger energies, in the longer run. */
+bool verdict_leaves(const row *r) {
+    static const double larger = 4;
+    return r->followed > 0 && r->longer.met > larger * r->energy.met &&
+           r->longer.theory != NEVH_THEORY_OPEN;
+}
+
 /* Level errors of a run that are larger when it is continued. */
 void verdict_tell_larger(const plan *p, const row rows[], size_t count,
                          list *words) {
@@ -122,12 +129,21 @@ void verdict_tell_larger(const plan *p, const row rows[], size_t count,
             !(r->longer.max > larger * r->energy.max) ||
             r->longer.max <= r->longer.rounding)
             continue;
+        if (r->longer.max > r->longer.limit) {
+            verdict_tell_later(p, rows, count, r, words);
+            continue;
+        }
+        bool leaves = verdict_leaves(r);
+        bool level = r->longer.last_fifth <= 2 * r->longer.first_fifth;
         char *subject = verdict_subject(p, rows, count, r);
         char *until = verdict_until(p, r);
         list_print(words,
                    "%s: the energy error is at most %.1e in the run, and "
-                   "%.1e when it is continued until t = %s, level since.",
-                   subject, r->energy.max, r->longer.max, until);
+                   "%.1e when it is continued until t = %s%s.",
+                   subject, r->energy.max, r->longer.max, until,
+                   leaves  ? ", where its energies are far larger"
+                   : level ? ", level since"
+                           : "");
         free(subject);
         free(until);
     }

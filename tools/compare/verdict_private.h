@@ -23,6 +23,8 @@ void verdict_tell_later(const plan *, const row rows[], size_t count,
 void verdict_tell_open(const plan *, const row rows[], size_t count,
                        const row *, list *words);
 /* Level errors of a run that are larger when it is continued. */
+/* Whether the longer run meets far larger energies. */
+bool verdict_leaves(const row *);
 void verdict_tell_larger(const plan *, const row rows[], size_t count,
                          list *words);
 /* Which verdicts are not from the run alone. */

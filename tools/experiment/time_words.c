@@ -24,7 +24,7 @@ static bool is_fast(const plan *p) {
 /* Jumps, and what steps pass over, are booked as far as verdicts may follow a
    run. */
 void plan_look_at_time(plan *p) {
-    static const double followed = 513; /* nevh_verdict_settle goes to 512 */
+    static const double followed = 2049; /* nevh_verdict_settle goes to 2048 */
     double start = p->run->t_start, end = p->t_end;
     if (!p->time)
         return;

@@ -93,12 +93,13 @@ static double refine(search *s, double kept, double lost) {
 }
 
 /* From the times that two steps keep the target for, along a power law; none
-   where these do not grow as such steps let expect. */
+   where these do not grow as such steps let expect, nor where H reads t: what it
+   does later, as a next pulse, no shorter run shows. */
 static double guess(const search *s, double dt, double keeps, double longer_dt,
                     double longer_keeps) {
     double span = s->plan->t_end - s->plan->run->t_start;
     double power = log(keeps / longer_keeps) / log(longer_dt / dt);
-    if (!(power > 0.5 && power < 12))
+    if (s->plan->time || !(power > 0.5 && power < 12))
         return 0;
     return rounded_down(dt * pow(keeps / span, 1 / power), 1);
 }
