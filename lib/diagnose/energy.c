@@ -306,6 +306,9 @@ static double kinetic_of(const nevh_energy *e, size_t lane) {
     return e->kinetic[lane];
 }
 
+/* Of |H0|: smaller energies are of the size of its rounding. */
+static const double measurable = 1e3 * DBL_EPSILON;
+
 /* The energy of a motion that is small beside |H0|; 0: it is not.  Where there are
    many orbits, those that were seen to change more are not followed; nor are those
    of functions without gradients, which may be slow, and fail elsewhere. */
@@ -315,7 +318,7 @@ static double small_motion(const nevh_energy *e, size_t lane) {
     bool formulas = nevh__best_gradient(e->field->system) == nevh_exact;
     bool rests = formulas && calm && kinetic_of(e, lane) < base;
     double orbit = rests ? typical(e, lane) : 0;
-    return orbit < base ? orbit : 0;
+    return orbit < base && orbit > measurable * e->found[lane] ? orbit : 0;
 }
 
 /* The scale, after all that was met. */

@@ -8,6 +8,7 @@
 #include "diagnose/energy_private.h"
 #include "gradient/field_private.h"
 #include <fenv.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,10 +19,16 @@ static const double growing = 8;
 
 enum { MOST = 4096 }; /* states that are looked at */
 
+/* Units of rounding of a coordinate: one that moves, but by less, was followed no
+   further than rounding goes, such as a stiff spring at its natural length. */
+static const double resolved = 1e5;
+
 typedef struct {
     nevh_field *values;
     double *now, *rest, *low, *high; /* by term */
     double *still;                   /* 2n: the state, at rest */
+    double *moved;                   /* n: how far coordinates were met */
+    const double *from;              /* n: from there */
     double *until, *energy; /* by state: time, and the motion's so far */
     double kinetic, start;
     size_t count;
@@ -63,9 +70,19 @@ static void look(void *context, double t, double h, const double y[]) {
         m->low[i] = m->count ? fmin(m->low[i], m->now[i]) : m->now[i];
         m->high[i] = m->count ? fmax(m->high[i], m->now[i]) : m->now[i];
     }
+    for (size_t k = 0; k < m->values->n; k++)
+        m->moved[k] = fmax(m->moved[k], fabs(y[k] - m->from[k]));
     m->kinetic = fmax(m->kinetic, kinetic_of(m, t, y));
     m->until[m->count] = t;
     m->energy[m->count++] = fmax(m->kinetic, range_of(m));
+}
+
+static bool is_resolved(const motion *m) {
+    for (size_t k = 0; k < m->values->n; k++)
+        if (m->moved[k] > 0 &&
+            m->moved[k] < resolved * DBL_EPSILON * fabs(m->from[k]))
+            return false;
+    return true;
 }
 
 /* That of all states; 0 where it goes on growing. */
@@ -79,12 +96,13 @@ static double energy_of(const motion *m) {
 
 static bool allocate(motion *m) {
     size_t terms = m->values->n_terms, n = m->values->n;
-    m->now = nevh__array(4 * terms + 2 * n + 2 * MOST, sizeof *m->now);
+    m->now = nevh__array(4 * terms + 3 * n + 2 * MOST, sizeof *m->now);
     m->rest = m->now + terms;
     m->low = m->rest + terms;
     m->high = m->low + terms;
     m->still = m->high + terms;
-    m->until = m->still + 2 * n;
+    m->moved = m->still + 2 * n;
+    m->until = m->moved + n;
     m->energy = m->until + MOST;
     return m->now;
 }
@@ -102,6 +120,7 @@ static bool follow(motion *m, double t, const double q[], const double p[],
     bool fine = !differences || (own && !nevh_field_status(own));
     memcpy(start, q, values->n * sizeof *q);
     memcpy(start + values->n, p, values->n * sizeof *p);
+    m->from = q;
     look(m, t, 0, start);
     double *sizes = start + 2 * values->n;
     fine = fine && nevh__follow_orbit(differences ? own : values, t, q, p,
@@ -117,7 +136,7 @@ double nevh__orbit_energy(nevh_field *values, double t, const double q[],
     fenv_t own; /* as in nevh_stepper_new */
     feholdexcept(&own);
     bool fine = state && allocate(&m) && follow(&m, t, q, p, state);
-    double energy = fine ? energy_of(&m) : 0;
+    double energy = fine && is_resolved(&m) ? energy_of(&m) : 0;
     fesetenv(&own);
     free(m.now);
     free(state);
