@@ -98,11 +98,10 @@ typedef enum {
 
 /* Errors are of H(t) - H(0), or of the balance, relative to `scale`: |H0|
    without the terms that read nothing; where that is below 1e-6 of the largest
-   |effect| at the start, that largest one.  Where that, or all effects, are more
-   than a hundred times as large or as small as the energies of the motion, these
-   are taken: the largest, along the orbit, of the ranges of terms that read
-   coordinates and of what terms that read momenta are above rest.  So scales do not
-   depend on where energies are counted from. */
+   |effect| at the start, that largest one.  Where all effects are below 1 % of the
+   energies of the motion, these are taken: the largest, along the orbit, of the
+   ranges of terms that read coordinates, and no time, and of what terms that read
+   momenta are above rest. */
 typedef struct {
     size_t samples;
     double initial; /* H0, all terms */

@@ -15,8 +15,7 @@
 static const double cancelled = 1e-6;
 
 /* Where all effects of the start are below that part of what the motion's energies
-   are, they are small by chance; where these are below that part of |H0|, H0 is one of
-   where energies are counted from. */
+   are, they are small by chance. */
 static const double by_chance = 0.01;
 
 /* Of the energies met, an error that exceeds all at the start is beyond measure. */
@@ -34,9 +33,6 @@ struct nevh_energy {
     double *start_t; /* width: the time */
     double *typical; /* width: the largest energy of the motion; -1: not looked
                         for yet */
-    double *found;   /* width: the scale of the start */
-    double *least;   /* width: the smallest of `largest` met */
-    double *kinetic; /* width: of momenta at the start; -1: likewise */
     double *largest; /* width: the largest sum of terms' |values| met */
     double *seen;    /* width: the |error| at which that was looked for */
     nevh_theory theory;
@@ -74,9 +70,6 @@ static int plan(nevh_energy *e, const nevh_system *s, bool portable) {
     e->start = nevh__array(2 * s->n * width, sizeof *e->start);
     e->start_t = nevh__array(width, sizeof *e->start_t);
     e->typical = nevh__array(width, sizeof *e->typical);
-    e->found = nevh__array(width, sizeof *e->found);
-    e->least = nevh__array(width, sizeof *e->least);
-    e->kinetic = nevh__array(width, sizeof *e->kinetic);
     e->seen = nevh__array(width, sizeof *e->seen);
     e->noise = nevh__array(width, sizeof *e->noise);
     e->blur = nevh__array(width, sizeof *e->blur);
@@ -91,9 +84,8 @@ static int plan(nevh_energy *e, const nevh_system *s, bool portable) {
         return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
     if (e->t && e->h && e->initial && e->gained && e->scale && e->limit &&
         e->largest && e->seen && e->noise && e->blur && e->trend && e->steps &&
-        e->start && e->start_t && e->typical && e->found && e->least &&
-        e->kinetic && e->next_look && e->started && e->effects && e->state &&
-        e->booking)
+        e->start && e->start_t && e->typical && e->next_look && e->started &&
+        e->effects && e->state && e->booking)
         return NEVH_OK;
     return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
 }
@@ -124,9 +116,6 @@ void nevh_energy_free(nevh_energy *e) {
     free(e->start);
     free(e->start_t);
     free(e->typical);
-    free(e->found);
-    free(e->least);
-    free(e->kinetic);
     free(e->seen);
     free(e->noise);
     free(e->blur);
@@ -284,9 +273,9 @@ static int find_scale(nevh_energy *e, size_t lane, double t, const double q[],
     e->start_t[lane] = t;
     e->typical[lane] = -1;
     e->limit[lane] = most;
-    e->found[lane] = fabs(sum) >= cancelled * most ? fabs(sum) : most;
-    e->scale[lane] = e->given_scale ? e->given_scale : e->found[lane];
-    e->kinetic[lane] = -1;
+    e->scale[lane] = e->given_scale                  ? e->given_scale
+                     : fabs(sum) >= cancelled * most ? fabs(sum)
+                                                     : most;
     if (!status && e->scale[lane] == 0)
         e->scale[lane] = typical(e, lane);
     if (e->scale[lane] == 0)
@@ -294,42 +283,12 @@ static int find_scale(nevh_energy *e, size_t lane, double t, const double q[],
     return status;
 }
 
-static double kinetic_of(const nevh_energy *e, size_t lane) {
-    if (e->kinetic[lane] < 0) {
-        const double *start = e->start + lane * 2 * e->n;
-        if (e->field->lanes)
-            nevh__field_alone(e->field, lane);
-        double found = nevh__start_kinetic(e->field, e->start_t[lane], start,
-                                           start + e->n);
-        e->kinetic[lane] = found >= 0 ? found : INFINITY;
-    }
-    return e->kinetic[lane];
-}
-
-/* Of |H0|: smaller energies are of the size of its rounding. */
-static const double measurable = 1e3 * DBL_EPSILON;
-
-/* The energy of a motion that is small beside |H0|; 0: it is not.  Where there are
-   many orbits, those that were seen to change more are not followed; nor are those
-   of functions without gradients, which may be slow, and fail elsewhere. */
-static double small_motion(const nevh_energy *e, size_t lane) {
-    double base = by_chance * e->found[lane];
-    bool calm = e->width == 1 || e->largest[lane] - e->least[lane] < 4 * base;
-    bool formulas = nevh__best_gradient(e->field->system) == nevh_exact;
-    bool rests = formulas && calm && kinetic_of(e, lane) < base;
-    double orbit = rests ? typical(e, lane) : 0;
-    return orbit < base && orbit > measurable * e->found[lane] ? orbit : 0;
-}
-
 /* The scale, after all that was met. */
 static double final_scale(const nevh_energy *e, size_t lane) {
     double most = e->limit[lane], met = e->largest[lane];
     bool alone = e->trend[lane].samples == 1;
-    if (e->given_scale > 0)
+    if (e->given_scale > 0 || (!alone && most >= by_chance * met))
         return e->scale[lane];
-    double small = small_motion(e, lane);
-    if (small > 0 || (!alone && most >= by_chance * met))
-        return small > 0 ? small : e->scale[lane];
     double orbit = typical(e, lane);
     if (most == 0 && orbit == 0)
         return met > 0 ? met : e->scale[lane];
@@ -355,8 +314,6 @@ static int look(nevh_energy *e, size_t lane, double t, const double q[],
     int status = nevh__field_moving_values(
         e->field, 1, &t, e->state, e->state + e->n, &h, &roundoff, &size);
     if (!status) {
-        bool any = e->largest[lane] > 0;
-        e->least[lane] = any ? fmin(e->least[lane], size) : size;
         e->largest[lane] = fmax(e->largest[lane], size);
     }
     e->seen[lane] = fmax(e->seen[lane], fabs(nevh_energy_error(e, lane)));
@@ -531,8 +488,7 @@ nevh_energy_report nevh_energy_result(const nevh_energy *e, size_t lane) {
     report.initial = e->initial[lane];
     report.scale = scale;
     report.theory = e->theory;
-    double small = small_motion(e, lane);
-    report.limit = fmax(1, (small > 0 ? small : e->limit[lane]) / scale);
+    report.limit = fmax(1, e->limit[lane] / scale);
     report.met = e->largest[lane] / scale;
     if (e->theory == NEVH_THEORY_OPEN)
         report.limit = fmax(report.limit, of_met * report.met);

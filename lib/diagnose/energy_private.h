@@ -29,8 +29,4 @@ nevh_theory nevh__theory_of(const nevh_stepper *);
    it.  0 where the orbit cannot be followed, or grows without end. */
 double nevh__orbit_energy(nevh_field *, double t, const double q[],
                           const double p[]);
-/* Of momenta alone, at the start; NAN where it has no value. */
-double nevh__start_kinetic(nevh_field *, double t, const double q[],
-                           const double p[]);
-
 #endif

@@ -3,7 +3,8 @@
    Neither where energies are counted from nor the state that is the start says
    that: of 1 - cos(x) near 0 only the change counts.  So of a term that reads
    coordinates alone its range along the orbit is taken, and of one that reads
-   momenta how far it is from its value at rest.
+   momenta how far it is from its value at rest.  Of a drive, as F x cos(t), the range
+   grows with the distance from x = 0, and is no energy of the motion.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/energy_private.h"
 #include "gradient/field_private.h"
@@ -55,9 +56,11 @@ static double kinetic_of(motion *m, double t, const double y[]) {
 
 static double range_of(const motion *m) {
     double most = 0;
-    for (size_t i = 0; i < m->values->n_terms; i++)
-        if (m->values->terms[i].nq && m->high[i] > m->low[i])
+    for (size_t i = 0; i < m->values->n_terms; i++) {
+        const nevh__planned *x = &m->values->terms[i];
+        if (x->nq && !x->term->decl.time && m->high[i] > m->low[i])
             most = fmax(most, m->high[i] - m->low[i]);
+    }
     return most;
 }
 
@@ -142,20 +145,4 @@ double nevh__orbit_energy(nevh_field *values, double t, const double q[],
     free(state);
     values->report = (nevh__report){0}; /* where values are not finite */
     return energy;
-}
-
-double nevh__start_kinetic(nevh_field *values, double t, const double q[],
-                           const double p[]) {
-    motion m = {.values = values, .start = t};
-    double *state = nevh__array(2 * values->n, sizeof *state), kinetic = NAN;
-    if (state && allocate(&m)) {
-        memcpy(state, q, values->n * sizeof *q);
-        memcpy(state + values->n, p, values->n * sizeof *p);
-        if (values_of(&m, t, state, m.now))
-            kinetic = kinetic_of(&m, t, state);
-    }
-    free(m.now);
-    free(state);
-    values->report = (nevh__report){0};
-    return kinetic;
 }
