@@ -165,10 +165,11 @@ typedef struct {
                  RANDOM_WALK where growth is slower and lasts
    NONE          BOUNDED as for OPEN, DRIFTS along a line, else RANDOM_WALK, of
                  the run as it is
-   UNDECIDED     where half of the largest error was made so, unless BOUNDED: steps that pass over changes of H are
-                 no measure of the scheme (nevh_energy_passes_over);
-                 and otherwise: a longer run may tell; also before the first step,
-                 and of a report without samples
+   UNDECIDED     unless BOUNDED, where more than half of the largest error is of
+                 steps that pass over a change of H in time, which are no measure
+                 of the scheme (nevh_energy_passes_over).  Otherwise a longer run
+                 may tell.  Also before the first step, and of a report without
+                 samples
 
    Thread-safe. */
 NEVH_API nevh_verdict nevh_energy_verdict(const nevh_energy_report *,

@@ -313,9 +313,8 @@ static int look(nevh_energy *e, size_t lane, double t, const double q[],
     gather(e, lane, q, p);
     int status = nevh__field_moving_values(
         e->field, 1, &t, e->state, e->state + e->n, &h, &roundoff, &size);
-    if (!status) {
+    if (!status)
         e->largest[lane] = fmax(e->largest[lane], size);
-    }
     e->seen[lane] = fmax(e->seen[lane], fabs(nevh_energy_error(e, lane)));
     return status;
 }

@@ -25,8 +25,8 @@ void nevh__energy_restart(nevh_energy *, size_t lane);
 nevh_theory nevh__theory_of(const nevh_stepper *);
 
 /* The largest energy of the motion, of a term of a field for values, along the
-   orbit from there on: neither constants nor where energies are counted from change
-   it.  0 where the orbit cannot be followed, or grows without end. */
+   orbit from there on.  0 where the orbit cannot be followed, or grows without end. */
 double nevh__orbit_energy(nevh_field *, double t, const double q[],
                           const double p[]);
+
 #endif

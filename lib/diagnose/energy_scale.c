@@ -1,7 +1,6 @@
 /* nevh: how large are the energies of an orbit's motion?
 
-   Neither where energies are counted from nor the state that is the start says
-   that: of 1 - cos(x) near 0 only the change counts.  So of a term that reads
+   Asked where all effects of the start are small by chance.  Of a term that reads
    coordinates alone its range along the orbit is taken, and of one that reads
    momenta how far it is from its value at rest.  Of a drive, as F x cos(t), the range
    grows with the distance from x = 0, and is no energy of the motion.
@@ -80,12 +79,16 @@ static void look(void *context, double t, double h, const double y[]) {
     m->energy[m->count++] = fmax(m->kinetic, range_of(m));
 }
 
+/* Whether any coordinate moved by more than its rounding, if one moved. */
 static bool is_resolved(const motion *m) {
-    for (size_t k = 0; k < m->values->n; k++)
-        if (m->moved[k] > 0 &&
-            m->moved[k] < resolved * DBL_EPSILON * fabs(m->from[k]))
-            return false;
-    return true;
+    bool moved = false;
+    for (size_t k = 0; k < m->values->n; k++) {
+        double rounding = resolved * DBL_EPSILON * fabs(m->from[k]);
+        if (m->moved[k] > 0 && m->moved[k] >= rounding)
+            return true;
+        moved = moved || m->moved[k] > 0;
+    }
+    return !moved;
 }
 
 /* That of all states; 0 where it goes on growing. */

@@ -152,13 +152,17 @@ static FILE *open_file(const char *path) {
     return fopen(path, "rb");
 }
 #else
-/* A pipe that nobody writes to is not waited for without end. */
+/* Pipes are not waited for without end. */
 static bool has_begun(int file) {
     enum { LONGEST = 10000 }; /* milliseconds */
     struct pollfd one = {.fd = file, .events = POLLIN};
     struct stat found;
     bool pipe = fstat(file, &found) == 0 && S_ISFIFO(found.st_mode);
-    bool begun = !pipe || poll(&one, 1, LONGEST) > 0;
+    int ready = 1;
+    do
+        ready = pipe ? poll(&one, 1, LONGEST) : 1;
+    while (ready < 0 && errno == EINTR);
+    bool begun = ready > 0;
     errno = begun ? 0 : ETIMEDOUT;
     return begun && fcntl(file, F_SETFL, O_RDONLY) == 0;
 }
@@ -185,7 +189,7 @@ nevh_scene *nevh_scene_read_with(const char *path,
     if (!file) {
         if (s && path)
             unreadable(s, errno == ETIMEDOUT
-                              ? "it is a pipe that nobody writes to"
+                              ? "nothing was written to this pipe for 10 s"
                               : strerror(errno));
         else if (s)
             refuse(s, NEVH_EINVAL, "the path is NULL");

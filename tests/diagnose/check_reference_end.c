@@ -116,7 +116,8 @@ TEST(growth_is_that_of_the_reversed_orbit) {
     ck_assert_int_eq(back.report.verdict, there.report.verdict);
 }
 
-/* A run that does not see what rows see: with their step it does. */
+/* A run that does not see what rows see: with their step it does.  Of abs there is no
+   series, which would see the wall. */
 TEST(steps_are_no_longer_than_asked_for) {
     const char wall[] = "T = p_x^2/2\nV = 2*exp(-((abs(x) - 1.777)/0.0002)^2)";
     setup blind = refer("x = 0, 1", wall, 4, NULL);

@@ -78,7 +78,7 @@ mkfifo $work/pipe 2>/dev/null && {
     cat $work/well.nevh >$work/pipe &
     exits 0 check $work/pipe
     limit="${limit:+timeout 60}"
-    tells 'pipe that nobody writes to' check $work/pipe
+    tells 'nothing was written to this pipe' check $work/pipe
 }
 
 # Words of CC that make double another type.

@@ -22,9 +22,9 @@ void verdict_tell_later(const plan *, const row rows[], size_t count,
 /* A row that even a longer run leaves open. */
 void verdict_tell_open(const plan *, const row rows[], size_t count,
                        const row *, list *words);
-/* Level errors of a run that are larger when it is continued. */
 /* Whether the longer run meets far larger energies. */
 bool verdict_leaves(const row *);
+/* Level errors of a run that are larger when it is continued. */
 void verdict_tell_larger(const plan *, const row rows[], size_t count,
                          list *words);
 /* Which verdicts are not from the run alone. */

@@ -6,9 +6,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_STEPS = 2000 };
+enum { MOST_STEPS = 2000, MOST_GRADIENTS = 1000000 };
 
-/* Their largest changes on an orbit by dop853; NULL: it fails.  To be freed. */
+/* Steps of dt may be many of dop853's. */
+static int stop_costly(void *data, size_t step, double t, const double q[],
+                       const double p[]) {
+    const nevh_stepper *s = data;
+    (void)step, (void)t, (void)q, (void)p;
+    return nevh_stepper_counts(s).gradients > MOST_GRADIENTS;
+}
+
+/* Their largest changes on an orbit by dop853; NULL: it fails, or costs too much.  To
+   be freed. */
 static double *changes(const plan *p, double t_end, double tolerance) {
     plan trial = *p;
     double *q = tool_allocate(2 * p->n, sizeof *q), *m = q + p->n, stopped;
@@ -18,11 +27,12 @@ static double *changes(const plan *p, double t_end, double tolerance) {
     trial.native = NEVH_NATIVE_NEVER;
     nevh_stepper *s = plan_stepper(&trial, "dop853");
     invariants *kept = invariants_new(&trial);
-    nevh_observer observer = {invariants_observe, kept, 1};
+    nevh_observer observers[] = {{invariants_observe, kept, 1},
+                                 {stop_costly, s, 1}};
     memcpy(q, p->q, p->n * sizeof *q);
     memcpy(m, p->p, p->n * sizeof *m);
     bool good = !nevh_stepper_status(s) &&
-                !plan_run(&trial, s, p->dt[0], q, m, &observer, 1, &stopped);
+                !plan_run(&trial, s, p->dt[0], q, m, observers, 2, &stopped);
     double *change = invariants_result(kept);
     nevh_stepper_free(s);
     free(q);
@@ -97,5 +107,6 @@ void conserved_words(const plan *p, list *notes) {
         list_add(notes, followed ? "[invariants] were not checked: their sizes "
                                    "near the start are not known."
                                  : "[invariants] were not checked: dop853 "
-                                   "does not follow this orbit.");
+                                   "does not follow this orbit, or not with "
+                                   "so little work.");
 }
