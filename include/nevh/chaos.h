@@ -32,7 +32,7 @@ typedef struct {
                                     the orbit starts; width is ignored.
                                     Derivatives are exact where terms bring
                                     them; else `gradient` */
-    double t_start, dt; /* dt < 0: backward in time */
+    double t_start, dt;          /* dt < 0: backward in time */
     size_t starts;     /* the orbit and such as start near by, at the same
                           energy; 0: 8 */
     size_t exponents;  /* the largest ones, up to 2n; 0: 1 */

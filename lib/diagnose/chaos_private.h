@@ -65,7 +65,7 @@ struct nevh_chaos {
                                     kept orthonormal; 0: one exponent */
     size_t lanes;                                   /* of a start */
     size_t width;
-    nevh_options options; /* q, p and scale are its own */
+    nevh_options options;       /* q, p and scale are its own */
     double t_start, dt, period; /* dt > 0, and */
     double way;                 /* 1, or -1: backward in time */
     uint64_t seed;
