@@ -9,14 +9,16 @@
 
 /* A length is where this part of a variation is not that of a quadratic. */
 static const double not_quadratic = 0.2;
-/* Of the kinetic energy: less is a force that acts elsewhere, and says nothing of
-   the momenta. */
+/* Of the kinetic energy, or of what else varies there: less is a force that acts
+   elsewhere, or a small one, and says nothing of the momenta. */
 static const double out_of_reach = 0x1p-26;
 enum { FARTHEST = 400, LEAP = 8 }; /* powers of two from the first guess */
 enum { FEWEST_AHEAD = 2, MOST_AHEAD = 30 }; /* distances at once */
 enum { NEARER = 3, NEAREST = 24 }; /* below a distance that may be periods */
 static const double as_much = 0.125;
 static const double overflowing = 0x1p500;
+/* Distances over the first one: beyond, what is not finite is no edge of a domain. */
+static const double no_edge = 0x1p60;
 enum { MOST_LANES = 4, TRIED_LANES = 64 };
 /* Powers of two may be whole periods, over which nothing varies. */
 static const double askew = 0.618;
@@ -183,6 +185,12 @@ static bool leap_down(const nevh__step_selection *e, const nevh__planned *term,
     return !too_far(&v);
 }
 
+/* Of eps*x^4 with eps = 0: it varies nowhere, until x^4 overflows. */
+static bool is_overflow(const variation *v, bool seen, double times) {
+    bool finite = isfinite(v->rest) && isfinite(v->whole);
+    return !finite && (!seen || times > no_edge);
+}
+
 /* Twice the distance again and again, at most so often, until that is too far.
    Several are asked for at once, the more the longer it takes. */
 static double double_up(const nevh__step_selection *e,
@@ -190,8 +198,8 @@ static double double_up(const nevh__step_selection *e,
                         double distance, const variation *here, int most) {
     variation v[MOST_AHEAD];
     size_t ahead = FEWEST_AHEAD;
-    double whole = here->whole;
-    bool seen = false;
+    double whole = here->whole, first = distance;
+    bool seen = whole > here->rounding;
     for (int done = 0; done < most;
          ahead = 2 * ahead < MOST_AHEAD ? 2 * ahead : MOST_AHEAD) {
         vary_on(e, term, instance, k, 2 * distance, ahead, v);
@@ -199,6 +207,8 @@ static double double_up(const nevh__step_selection *e,
             if (!(whole < overflowing))
                 return seen ? INFINITY : NAN;
             seen |= v[i].whole > v[i].rounding;
+            if (is_overflow(&v[i], seen, distance / first))
+                return seen ? INFINITY : NAN;
             if (too_far(&v[i]))
                 return distance;
             distance *= 2;
@@ -227,7 +237,7 @@ double nevh__curve_length(const nevh__step_selection *e,
 }
 
 /* The distance over which an instance varies by `energy`: in leaps below it,
-   then up by twos. */
+   then up by twos.  NAN: it does not vary so much. */
 static double energy_length(const nevh__step_selection *e,
                             const nevh__planned *term, size_t instance,
                             size_t k, double guess, double energy) {
@@ -239,10 +249,10 @@ static double energy_length(const nevh__step_selection *e,
     }
     for (int i = 0; i < FARTHEST; i++) {
         if (!(vary(e, term, instance, k, distance).whole < energy))
-            break;
+            return distance;
         distance *= 2;
     }
-    return distance;
+    return NAN;
 }
 
 /* A first guess that only saves time: the variable's size, or 1. */
@@ -285,6 +295,15 @@ static void find_curved(nevh__step_selection *e, const nevh__planned *term,
         return;
     e->length[i] = length;
     e->shortened = true;
+}
+
+/* Variations of all terms within the lengths that some have. */
+static void find_within(nevh__step_selection *e, const nevh__planned *term,
+                        size_t instance, size_t k, size_t i, double *energy) {
+    if (!(e->length[i] > 0))
+        return;
+    double whole = vary(e, term, instance, k, e->length[i]).whole;
+    *energy = fmax(*energy, isfinite(whole) ? whole : 0);
 }
 
 /* Nothing is curved: variations over the variables' own sizes. */
@@ -331,6 +350,8 @@ static void find_straight(nevh__step_selection *e, const nevh__planned *term,
         return;
     if (*energy > 0)
         length = energy_length(e, term, instance, k, guess, *energy);
+    if (isnan(length))
+        return;
     e->length[i] = e->length[i] < 0 ? -fmin(-e->length[i], length) : -length;
 }
 
@@ -422,7 +443,7 @@ bool nevh__keep_lengths(const nevh__step_selection *e) {
 }
 
 void nevh__find_lengths(nevh__step_selection *e) {
-    double energy = 0, kinetic = 0, last = 1;
+    double energy = 0, other = 0, last = 1;
     if (e->field->length) {
         load(e, 0, 0);
         e->lanes = e->samples.count = 1;
@@ -432,10 +453,12 @@ void nevh__find_lengths(nevh__step_selection *e) {
     find_over_lanes(e, &energy);
     if (energy == 0)
         visit_all(e, find_energy, &energy);
-    else
-        visit_all(e, find_kinetic, &kinetic);
-    if (energy < out_of_reach * kinetic)
-        energy = kinetic;
+    else {
+        visit_all(e, find_kinetic, &other);
+        visit_all(e, find_within, &other);
+    }
+    if (energy < out_of_reach * other)
+        energy = other;
     double *sizes = energy == 0 ? look_from_rest(e, &energy) : NULL;
     visit_all(e, find_straight, &energy); /* kept apart by their sign */
     e->sizes = NULL;

@@ -1,4 +1,5 @@
-/* nevh tests: orbits that start at rest at 0, in any units.
+/* nevh tests: orbits that start at rest at 0, in any units, and terms of H that are 0, or
+   nearly so.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "support.h"
 #include <math.h>
@@ -31,6 +32,23 @@ static const struct {
 };
 enum { CASES = sizeof cases / sizeof *cases, MOST = 6 };
 
+/* The state of a scene after 200 steps of h. */
+static void take_steps(const char *text, const nevh_integrator *scheme,
+                       const nevh_gradient *g, double h, double q[],
+                       double p[]) {
+    nevh_scene *scene = nevh_scene_parse("test", text);
+    ck_assert_str_eq(nevh_scene_message(scene), "");
+    ck_assert_int_eq(nevh_scene_start(scene, q, p), NEVH_OK);
+    nevh_options o = {.gradient = g, .q = q, .p = p};
+    nevh_stepper *s = nevh_stepper_new(nevh_scene_system(scene), scheme, &o);
+    ck_assert_msg(!nevh_stepper_status(s), "%s", nevh_stepper_message(s));
+    for (int i = 0; i < 200; i++)
+        ck_assert_msg(nevh_stepper_apply(s, h * i, h, q, p) == NEVH_OK, "%s",
+                      nevh_stepper_message(s));
+    nevh_stepper_free(s);
+    nevh_scene_free(scene);
+}
+
 /* The state after 200 steps of a tenth of the unit of time. */
 static void follow(int which, const double unit[3], const nevh_gradient *g,
                    double q[], double p[]) {
@@ -42,20 +60,8 @@ static void follow(int which, const double unit[3], const nevh_gradient *g,
              1.3 * energy * time * time / length / length,
              0.9 * energy / length / length, 0.7 * energy / length, 1.1 / time,
              cases[which].coordinates, cases[which].h);
-    nevh_scene *scene = nevh_scene_parse("test", text);
-    ck_assert_str_eq(nevh_scene_message(scene), "");
-    ck_assert_int_eq(nevh_scene_start(scene, q, p), NEVH_OK);
-    nevh_options o = {.gradient = g, .q = q, .p = p};
-    nevh_stepper *s = nevh_stepper_new(
-        nevh_scene_system(scene),
-        cases[which].separable ? nevh_verlet : nevh_gauss4, &o);
-    ck_assert_msg(!nevh_stepper_status(s), "%s", nevh_stepper_message(s));
-    for (int i = 0; i < 200; i++)
-        ck_assert_msg(nevh_stepper_apply(s, 0.1 * time * i, 0.1 * time, q, p) ==
-                          NEVH_OK,
-                      "%s", nevh_stepper_message(s));
-    nevh_stepper_free(s);
-    nevh_scene_free(scene);
+    take_steps(text, cases[which].separable ? nevh_verlet : nevh_gauss4, g,
+               0.1 * time, q, p);
 }
 
 static void assert_same(int which, const double unit[3],
@@ -87,4 +93,29 @@ TEST_EACH(orbits_from_rest_do_not_depend_on_units, CASES) {
     assert_same(_i, (const double[]){0x1p-465, 0x1p-930, 1}, nevh_central4);
     assert_same(_i, (const double[]){0x1p-100, 0x1p80, 0x1p-60}, nevh_central8);
     assert_same(_i, (const double[]){0x1p90, 0x1p-80, 0x1p60}, nevh_central2);
+}
+
+/* Beside an oscillator: terms that vary nowhere, but overflow, or hardly vary. */
+static const char *const vanishing[] = {
+    "0*x^4",           "0*x^3",         "0*x",         "0*exp(x)",
+    "0*(x^2 + y^2)^2", "0*p_x^4",       "1e-20*x^4",   "1e-30*cos(x)",
+    "1e-40*x^4",       "x^2/2 + 0*x^6", "1e-18*exp(y)"};
+enum { VANISHING = sizeof vanishing / sizeof *vanishing };
+
+TEST_EACH(terms_that_vanish_change_nothing, 3 * VANISHING) {
+    static const nevh_gradient *const *const differences[] = {
+        &nevh_central2, &nevh_central4, &nevh_central8};
+    char text[400];
+    double q[2][2], p[2][2];
+    snprintf(text, sizeof text,
+             "[coordinates]\nx = 1\ny = 0.5, 0.9\n[effects]\n"
+             "K = (p_x^2 + p_y^2)/2\nV = x^2/2 + y^2\nQ = %s\n",
+             vanishing[_i / 3]);
+    take_steps(text, nevh_verlet, nevh_exact, 0.05, q[0], p[0]);
+    take_steps(text, nevh_verlet, *differences[_i % 3], 0.05, q[1], p[1]);
+    for (int k = 0; k < 2; k++)
+        ck_assert_msg(fabs(q[1][k] - q[0][k]) < 1e-12 &&
+                          fabs(p[1][k] - p[0][k]) < 1e-12,
+                      "%s: %.17g, %.17g for %.17g, %.17g", vanishing[_i / 3],
+                      q[1][k], p[1][k], q[0][k], p[0][k]);
 }
