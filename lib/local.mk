@@ -205,6 +205,7 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/energy_book.c \
 	lib/diagnose/energy_book_private.h \
 	lib/diagnose/energy_scale.c \
+	lib/diagnose/energy_state_private.h \
 	lib/diagnose/theory.c \
 	lib/diagnose/passage_private.h \
 	lib/diagnose/passage.c \

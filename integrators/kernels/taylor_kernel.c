@@ -162,8 +162,8 @@ static double size_of(const nevh_work *w, const double rows[], size_t k,
     return ldexp(most, shift);
 }
 
-/* How long a series holds.  By powers of two in units in which the state changes by itself in about 1, so
-   that other units of time or length give the same digits. */
+/* How long a series holds.  By powers of two in units in which the state changes by
+   itself in about 1, so that other units of time or length give the same digits. */
 static double reach_of(const nevh_work *w, const double rows[]) {
     const taylor_plan *plan = w->plan;
     int exponent = 0;

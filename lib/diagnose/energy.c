@@ -1,54 +1,15 @@
 /* nevh: the energy observer.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/field_private.h"
-#include "diagnose/energy_book_private.h"
-#include "diagnose/energy_private.h"
-#include "diagnose/passage_private.h"
-#include "diagnose/trend_private.h"
+#include "diagnose/energy_state_private.h"
 #include "run/stepper_private.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Below this part of the largest effect, H0 is no measure of the energy. */
-static const double cancelled = 1e-6;
-
-/* Where all effects of the start are below that part of what the motion's energies
-   are, they are small by chance. */
-static const double by_chance = 0.01;
-
 /* Of the energies met, an error that exceeds all at the start is beyond measure. */
 static const double of_met = 0.1;
-
-struct nevh_energy {
-    nevh_field *field; /* for values only */
-    size_t n, width;
-    const nevh_stepper *followed;             /* NULL: errors are of H alone */
-    bool begun;                               /* any of the lanes */
-    double given_scale;                       /* by the user; 0: found */
-    double *t, *h, *initial, *scale, *gained; /* width each */
-    double *limit;   /* width: the largest effect at the start */
-    double *start;   /* 2n x width: the state there, and */
-    double *start_t; /* width: the time */
-    double *typical; /* width: the largest energy of the motion; -1: not looked
-                        for yet */
-    double *largest; /* width: the largest sum of terms' |values| met */
-    double *seen;    /* width: the |error| at which that was looked for */
-    nevh_theory theory;
-    double *noise, *blur;      /* width: of the gradient, relative */
-    size_t *steps, *next_look; /* width */
-    bool *started;             /* width */
-    double *effects;
-    double *state;         /* 2n: one lane */
-    double *booking;       /* 3n: of the book */
-    nevh__passage passage; /* of one lane */
-    nevh__book book;       /* likewise */
-    double missed;         /* as in the report, in energies */
-    double sudden; /* the largest change of the error in one step, one lane */
-    nevh__trend *trend;
-    nevh__report report;
-};
 
 static int plan(nevh_energy *e, const nevh_system *s, bool portable) {
     size_t width = e->width;
@@ -245,61 +206,12 @@ static void gather(nevh_energy *e, size_t lane, const double q[],
     }
 }
 
-/* That of the orbit, which does not depend on the run. */
-static double typical(const nevh_energy *e, size_t lane) {
-    if (e->typical[lane] < 0) {
-        const double *start = e->start + lane * 2 * e->n;
-        if (e->field->lanes)
-            nevh__field_alone(e->field, lane);
-        e->typical[lane] =
-            nevh__orbit_energy(e->field, e->start_t[lane], start, start + e->n);
-    }
-    return e->typical[lane];
-}
-
-/* |H0| of what reads something, or the largest of its effects, or, where there
-   is none, that of the orbit. */
-static int find_scale(nevh_energy *e, size_t lane, double t, const double q[],
-                      const double p[]) {
-    double sum = 0, most = 0;
-    gather(e, lane, q, p);
-    int status = nevh__field_moving_effects(e->field, t, e->state,
-                                            e->state + e->n, e->effects);
-    for (size_t i = 0; !status && i < e->field->system->n_effects; i++) {
-        sum += e->effects[i];
-        most = fmax(most, fabs(e->effects[i]));
-    }
-    memcpy(e->start + lane * 2 * e->n, e->state, 2 * e->n * sizeof *e->state);
-    e->start_t[lane] = t;
-    e->typical[lane] = -1;
-    e->limit[lane] = most;
-    e->scale[lane] = e->given_scale                  ? e->given_scale
-                     : fabs(sum) >= cancelled * most ? fabs(sum)
-                                                     : most;
-    if (!status && e->scale[lane] == 0)
-        e->scale[lane] = typical(e, lane);
-    if (e->scale[lane] == 0)
-        e->scale[lane] = 1; /* until energies are met */
-    return status;
-}
-
-/* The scale, after all that was met. */
-static double final_scale(const nevh_energy *e, size_t lane) {
-    double most = e->limit[lane], met = e->largest[lane];
-    bool alone = e->trend[lane].samples == 1;
-    if (e->given_scale > 0 || (!alone && most >= by_chance * met))
-        return e->scale[lane];
-    double orbit = typical(e, lane);
-    if (most == 0 && orbit == 0)
-        return met > 0 ? met : e->scale[lane];
-    return most < by_chance * orbit ? orbit : e->scale[lane];
-}
-
 static int begin(nevh_energy *e, size_t lane, double t, const double q[],
                  const double p[]) {
     e->initial[lane] = e->h[lane];
     e->gained[lane] = gain(e, lane);
-    int status = find_scale(e, lane, t, q, p);
+    gather(e, lane, q, p);
+    int status = nevh__energy_find_scale(e, lane, t);
     e->started[lane] = !status;
     e->begun |= !status;
     return status;
@@ -480,7 +392,7 @@ nevh_energy_report nevh_energy_result(const nevh_energy *e, size_t lane) {
     nevh_energy_report report = {.verdict = NEVH_UNDECIDED};
     if (!e || !e->begun || lane >= e->width)
         return report;
-    double scale = final_scale(e, lane);
+    double scale = nevh__energy_scale(e, lane);
     nevh__trend trend = e->trend[lane];
     if (scale != e->scale[lane])
         nevh__trend_multiply(&trend, e->scale[lane] / scale);

@@ -24,9 +24,4 @@ void nevh__energy_restart(nevh_energy *, size_t lane);
 /* What theory says of the steps of that stepper, planned. */
 nevh_theory nevh__theory_of(const nevh_stepper *);
 
-/* The largest energy of the motion, of a term of a field for values, along the
-   orbit from there on.  0 where the orbit cannot be followed, or grows without end. */
-double nevh__orbit_energy(nevh_field *, double t, const double q[],
-                          const double p[]);
-
 #endif

@@ -1,17 +1,25 @@
-/* nevh: how large are the energies of an orbit's motion?
+/* nevh: what are errors of the energy relative to?
 
-   Asked where all effects of the start are small by chance.  Of a term that reads
+   To |H0|; where all effects of the start are small by chance, to the energies of the
+   motion.  Of a term that reads
    coordinates alone its range along the orbit is taken, and of one that reads
    momenta how far it is from its value at rest.  Of a drive, as F x cos(t), the range
    grows with the distance from x = 0, and is no energy of the motion.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "diagnose/energy_private.h"
+#include "diagnose/energy_state_private.h"
 #include "gradient/field_private.h"
 #include <fenv.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Below this part of the largest effect, H0 is no measure of the energy. */
+static const double cancelled = 1e-6;
+
+/* Where all effects of the start are below that part of what the motion's energies
+   are, they are small by chance. */
+static const double by_chance = 0.01;
 
 /* Energies that are so many times as large in the second half of the time are those
    of growth without end: it outruns t^3. */
@@ -135,8 +143,10 @@ static bool follow(motion *m, double t, const double q[], const double p[],
     return fine;
 }
 
-double nevh__orbit_energy(nevh_field *values, double t, const double q[],
-                          const double p[]) {
+/* The largest energy of the motion, of a term of a field for values, along the
+   orbit from there on.  0 where the orbit cannot be followed, or grows without end. */
+static double orbit_energy(nevh_field *values, double t, const double q[],
+                           const double p[]) {
     motion m = {.values = values, .start = t};
     double *state = nevh__array(4 * values->n, sizeof *state);
     fenv_t own; /* as in nevh_stepper_new */
@@ -148,4 +158,49 @@ double nevh__orbit_energy(nevh_field *values, double t, const double q[],
     free(state);
     values->report = (nevh__report){0}; /* where values are not finite */
     return energy;
+}
+
+/* That of the orbit, which does not depend on the run. */
+static double typical(const nevh_energy *e, size_t lane) {
+    if (e->typical[lane] < 0) {
+        const double *start = e->start + lane * 2 * e->n;
+        if (e->field->lanes)
+            nevh__field_alone(e->field, lane);
+        e->typical[lane] =
+            orbit_energy(e->field, e->start_t[lane], start, start + e->n);
+    }
+    return e->typical[lane];
+}
+
+int nevh__energy_find_scale(nevh_energy *e, size_t lane, double t) {
+    double sum = 0, most = 0;
+    int status = nevh__field_moving_effects(e->field, t, e->state,
+                                            e->state + e->n, e->effects);
+    for (size_t i = 0; !status && i < e->field->system->n_effects; i++) {
+        sum += e->effects[i];
+        most = fmax(most, fabs(e->effects[i]));
+    }
+    memcpy(e->start + lane * 2 * e->n, e->state, 2 * e->n * sizeof *e->state);
+    e->start_t[lane] = t;
+    e->typical[lane] = -1;
+    e->limit[lane] = most;
+    e->scale[lane] = e->given_scale                  ? e->given_scale
+                     : fabs(sum) >= cancelled * most ? fabs(sum)
+                                                     : most;
+    if (!status && e->scale[lane] == 0)
+        e->scale[lane] = typical(e, lane);
+    if (e->scale[lane] == 0)
+        e->scale[lane] = 1; /* until energies are met */
+    return status;
+}
+
+double nevh__energy_scale(const nevh_energy *e, size_t lane) {
+    double most = e->limit[lane], met = e->largest[lane];
+    bool alone = e->trend[lane].samples == 1;
+    if (e->given_scale > 0 || (!alone && most >= by_chance * met))
+        return e->scale[lane];
+    double orbit = typical(e, lane);
+    if (most == 0 && orbit == 0)
+        return met > 0 ? met : e->scale[lane];
+    return most < by_chance * orbit ? orbit : e->scale[lane];
 }

@@ -39,6 +39,10 @@ tells 'the first, member 0: the solution itself ends at t = 5.15195' \
 tells 'the first, member 0: the solution itself ends at t = 2,' \
     sweep $work/flow.nevh --vary 'p_x = range(1, 2, 2)'
 
+# The end of a solution is no kink of H.
+exits 0 check $work/fall.nevh
+has '^  smooth  *yes'
+
 # Orbits that go on say nothing of that, and have what was asked for.
 scene well 'x = 0.5' 'H = p_x^2/2 + x^2/2 + x^4/4' "$sections$run"
 for one in chaos frequencies section; do

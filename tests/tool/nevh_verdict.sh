@@ -277,4 +277,11 @@ exits 0 compare $work/drag.nevh --integrators rk4
 tr '\n' ' ' <$work/out | tr -s ' ' |
     grep -q 'omega dt = 0\.1 that is soon large, or dt is too long for a rate of friction' ||
     { fails "blames omega dt"; cat $work/out; }
+
+# What exceeds all energies later is not level until then.
+scene 'x = 1, 0' 'H = p_x^2/2 + x^2/2*(1 + 1e-3*exp(t - 80))' 't_end = 40\ndt = 0.02' late
+exits 0 compare $work/late.nevh --integrators gauss4 --gradient exact
+tr '\n' ' ' <$work/out | tr -s ' ' >$work/all
+grep -q 'exceeds all energies when' $work/all || fails "tells nothing of the growth"
+grep -q 'level over the run, and up to' $work/all && fails "is level and exceeds"
 exit $status

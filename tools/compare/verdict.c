@@ -235,12 +235,13 @@ static void tell_large(const plan *p, const row rows[], size_t count,
 /* How far the errors of all bounded rows were seen to be level. */
 static double level_until(const plan *p, const row rows[], size_t count) {
     double least = INFINITY, start = p->run->t_start;
-    for (size_t i = 0; i < count; i++)
-        if (verdict_is(&rows[i], NEVH_BOUNDED))
-            least = fmin(
-                least,
-                (verdict_leaves(&rows[i]) ? 1 : fmax(1, rows[i].followed)) *
-                    (rows[i].t_end - start));
+    for (size_t i = 0; i < count; i++) {
+        const row *r = &rows[i];
+        bool beyond = r->followed > 0 && r->longer.max > r->longer.limit;
+        double lengths = beyond || verdict_leaves(r) ? 1 : fmax(1, r->followed);
+        if (verdict_is(r, NEVH_BOUNDED))
+            least = fmin(least, lengths * (r->t_end - start));
+    }
     return start + least;
 }
 

@@ -97,8 +97,11 @@ char *member_why(const plan *, uint64_t member, const char *message);
 /* What is wrong with a run that ended well, but whose energy changes by a good
    part, or that passes a pole: that, or that the solution ends; to be freed, NULL:
    nothing.
-   cost  the run again */
-char *plan_doubts(const plan *, const char *integrator, double dt);
+   watch   what observed that run */
+char *plan_doubts(const plan *, const nevh_energy *watch, int status);
+nevh_energy *plan_watch(const plan *);
+/* The same of a run that nothing observed: the run again. */
+char *plan_doubts_again(const plan *, const char *integrator, double dt);
 /* Where H jumps. */
 void time_notes(const plan *, list *notes);
 

@@ -170,40 +170,43 @@ char *member_why(const plan *p, uint64_t member, const char *message) {
     return text ? text : text_print("%s", message);
 }
 
-/* Whether a run comes to grief, and when it passes a pole. */
-static bool fails(const plan *p, const char *integrator, double dt,
-                  double *passed, const char **effect) {
-    static const double large = 0.1; /* of the energy */
+nevh_energy *plan_watch(const plan *p) {
     nevh_options o = plan_options(p, p->gradients.item[0]);
-    nevh_stepper *s = plan_stepper(p, integrator);
-    nevh_energy *energy = nevh_energy_new(p->system, &o);
-    double stopped, *q = tool_allocate(2 * p->n, sizeof *q);
-    int status = nevh_stepper_status(s);
-    memcpy(q, p->q, p->n * sizeof *q);
-    memcpy(q + p->n, p->p, p->n * sizeof *q);
-    plan_set_scale(p, energy);
-    if (!status)
-        status = plan_run(p, s, dt, q, q + p->n,
-                          &(nevh_observer){nevh_energy_observe, energy, 1}, 1,
-                          &stopped);
-    double error = nevh_energy_result(energy, 0).max;
-    *passed = nevh_energy_passed(energy, effect);
-    nevh_stepper_free(s);
-    nevh_energy_free(energy);
-    free(q);
-    return status || isfinite(*passed) || (!p->balance && !(error <= large));
+    nevh_energy *watch = nevh_energy_new(p->system, &o);
+    plan_set_scale(p, watch);
+    return watch;
 }
 
-char *plan_doubts(const plan *p, const char *integrator, double dt) {
-    double passed;
+char *plan_doubts(const plan *p, const nevh_energy *watch, int status) {
+    static const double large = 0.1; /* of the energy */
     const char *effect;
-    if (!fails(p, integrator, dt, &passed, &effect))
+    double passed = nevh_energy_passed(watch, &effect);
+    double error = nevh_energy_result(watch, 0).max;
+    if (!status && !isfinite(passed) && (p->balance || error <= large))
         return NULL;
     char *text = ends_text(p, plan_ends(p));
     if (!text && isfinite(passed))
         text = text_print("a step before t = %.6g passes a pole of %s: what "
                           "follows is not the orbit of H",
                           passed, effect);
+    return text;
+}
+
+char *plan_doubts_again(const plan *p, const char *integrator, double dt) {
+    nevh_stepper *s = plan_stepper(p, integrator);
+    nevh_energy *watch = plan_watch(p);
+    double stopped, *q = tool_allocate(2 * p->n, sizeof *q);
+    int status = nevh_stepper_status(s);
+    memcpy(q, p->q, p->n * sizeof *q);
+    memcpy(q + p->n, p->p, p->n * sizeof *q);
+    if (!status)
+        status = plan_run(p, s, dt, q, q + p->n,
+                          &(nevh_observer){nevh_energy_observe, watch, 1}, 1,
+                          &stopped);
+    char *text = plan_doubts(p, watch, status);
+    nevh_stepper_free(s);
+    nevh_energy_free(watch);
+    free(q);
     return text;
 }
 

@@ -272,7 +272,7 @@ static int run_one(job *j, const char *integrator, double dt) {
              .dt = dt,
              .chaos = tool_owned(nevh_chaos_new(p->system, &of))};
     bool refused = nevh_chaos_status(r.chaos);
-    char *doubts = refused ? NULL : plan_doubts(p, integrator, dt);
+    char *doubts = refused ? NULL : plan_doubts_again(p, integrator, dt);
     int status =
         refused  ? tool_refuse("%s: %s", p->name, nevh_chaos_message(r.chaos))
         : doubts ? fail(j, &r, doubts)

@@ -32,9 +32,10 @@ static double most(const plan *p) {
    freed, NULL: there is none. */
 static char *jump(const plan *p, const nevh_energy *energy, double before,
                   double t) {
-    static const double sudden = 1e-6; /* of the scale */
+    static const double sudden = 1e-6; /* of the energies met */
     double now = nevh_energy_error(energy, 0);
-    if (p->time || p->friction || !(fabs(now - before) > sudden))
+    double met = fmax(1, nevh_energy_result(energy, 0).met);
+    if (p->time || p->friction || !(fabs(now - before) > sudden * met))
         return NULL;
     return text_print("H jumps on the orbit before t = %.6g, by %.2g of its "
                       "scale, which no derivative tells of",
@@ -66,7 +67,8 @@ smoothness smoothness_on_way(const plan *p, char **why) {
         if ((double)nevh_stepper_counts(s).gradients > most(p))
             break;
     }
-    bool ends = series && status == NEVH_EDOM;
+    bool out = series && status == NEVH_EDOM;
+    bool ends = out && !isfinite(plan_ends(p)); /* else the solution does */
     if (ends)
         *why = text_print("%s", nevh_stepper_message(s));
     else if (jumps)
@@ -74,7 +76,7 @@ smoothness smoothness_on_way(const plan *p, char **why) {
     nevh_stepper_free(s);
     nevh_energy_free(energy);
     free(z);
-    return ends || jumps       ? SMOOTHNESS_NONE
-           : series && !status ? SMOOTHNESS_ALL
-                               : SMOOTHNESS_UNKNOWN;
+    return ends || jumps                ? SMOOTHNESS_NONE
+           : series && (!status || out) ? SMOOTHNESS_ALL
+                                        : SMOOTHNESS_UNKNOWN;
 }

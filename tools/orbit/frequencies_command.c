@@ -106,7 +106,8 @@ static int run(job *j, const char *integrator, size_t finer, char **why) {
     const nevh_integrator *scheme = plan_scheme(integrator, &transformed);
     bool own = transformed || nevh_integrator_own_time(scheme);
     double *q = tool_allocate(2 * p->n, sizeof *q), *m = q + p->n, stopped;
-    nevh_observer observer = {take, j, 1};
+    nevh_energy *watch = plan_watch(p);
+    nevh_observer observers[] = {{take, j, 1}, {nevh_energy_observe, watch, 1}};
     int status = nevh_stepper_status(s);
     j->failed = 0;
     j->finer = finer;
@@ -120,12 +121,15 @@ static int run(job *j, const char *integrator, size_t finer, char **why) {
                                          "samples are at equal times");
         status = -1;
     } else {
-        status = plan_run(p, s, p->dt[0] / (double)finer, q, m, &observer, 1,
-                          &stopped);
-        if (status)
-            *why = plan_why(p, j->failed ? nevh_scene_message(p->scene)
-                                         : nevh_stepper_message(s));
+        status = plan_run(p, s, p->dt[0] / (double)finer, q, m, observers,
+                          finer == 1 ? 2 : 1, &stopped);
+        *why = status ? plan_why(p, j->failed ? nevh_scene_message(p->scene)
+                                              : nevh_stepper_message(s))
+               : finer == 1 ? plan_doubts(p, watch, status)
+                            : NULL;
+        status = *why && !status ? NEVH_EFAILED : status;
     }
+    nevh_energy_free(watch);
     free(q);
     nevh_stepper_free(s);
     return status;
@@ -373,10 +377,6 @@ static int analyse(job *j, const options *o, const char *integrator) {
 static int run_and_analyse(job *j, const options *o, const char *integrator) {
     char *why = NULL;
     int status = run(j, integrator, 1, &why);
-    if (!status)
-        why = plan_doubts(&j->plan, integrator, j->plan.dt[0]);
-    if (why && !status)
-        status = NEVH_EFAILED;
     if (status)
         list_print(&j->words, "%s %s: %s", integrator,
                    status < 0 ? "refused" : "failed", why);

@@ -176,7 +176,7 @@ static nevh_sections *watch(job *j, const nevh_stepper *s) {
 
 /* How a run ended, of several the first that did not go on to the end. */
 static int explain(job *j, int status, const nevh_stepper *s,
-                   const nevh_sections *x) {
+                   const nevh_sections *x, const nevh_energy *energy) {
     const char *why = nevh_scene_message(j->plan->scene);
     int looking = nevh_sections_status(x);
     bool told = j->ended != NULL;
@@ -184,7 +184,7 @@ static int explain(job *j, int status, const nevh_stepper *s,
         j->ended = stop_words(j->plan, j->stopped);
     char *doubts = status || told || j->members.several
                        ? NULL
-                       : plan_doubts(j->plan, j->integrator, j->plan->dt[0]);
+                       : plan_doubts(j->plan, energy, status);
     if (doubts) {
         free(j->ended);
         j->ended = text_print("warning: %s", doubts);
@@ -212,15 +212,19 @@ static int explain(job *j, int status, const nevh_stepper *s,
 static int run_member(job *j, nevh_stepper *s) {
     const plan *p = j->plan;
     nevh_sections *x = watch(j, s);
-    nevh_observer observer = {nevh_sections_observe, x, 1};
+    nevh_energy *energy = plan_watch(p);
+    nevh_observer observers[] = {{nevh_sections_observe, x, 1},
+                                 {nevh_energy_observe, energy, 1}};
     int status = nevh_sections_status(x);
     double *q = j->members.q + j->at * p->n, *m = j->members.p + j->at * p->n;
     nevh_stepper_reset(s);
     j->stopped = NAN;
     if (!status)
-        status = plan_run(p, s, p->dt[0], q, m, &observer, 1, &j->stopped);
-    status = explain(j, status, s, x);
+        status = plan_run(p, s, p->dt[0], q, m, observers,
+                          j->members.several ? 1 : 2, &j->stopped);
+    status = explain(j, status, s, x, energy);
     nevh_sections_free(x);
+    nevh_energy_free(energy);
     return status;
 }
 

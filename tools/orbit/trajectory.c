@@ -223,8 +223,9 @@ static void doubt(trajectory *r) {
         warn(r, changed.item[i]);
     list_free(&changed);
     bool suspect = !p->balance && r->changed > large * scale;
-    char *why =
-        suspect && shorter ? plan_doubts(p, r->integrator, p->dt[0]) : NULL;
+    char *why = suspect && shorter
+                    ? plan_doubts_again(p, r->integrator, p->dt[0])
+                    : NULL;
     if (suspect && !why && r->changed > all * scale)
         why = text_print("the energy changes by up to %.2g times its scale: "
                          "these steps are no measure of the orbit; take a "
