@@ -186,9 +186,9 @@ static bool leap_down(const nevh__step_selection *e, const nevh__planned *term,
 }
 
 /* Of eps*x^4 with eps = 0: it varies nowhere, until x^4 overflows. */
-static bool is_overflow(const variation *v, bool seen, double times) {
+static bool is_overflow(const variation *v, double times) {
     bool finite = isfinite(v->rest) && isfinite(v->whole);
-    return !finite && (!seen || times > no_edge);
+    return !finite && times > no_edge;
 }
 
 /* Twice the distance again and again, at most so often, until that is too far.
@@ -207,7 +207,7 @@ static double double_up(const nevh__step_selection *e,
             if (!(whole < overflowing))
                 return seen ? INFINITY : NAN;
             seen |= v[i].whole > v[i].rounding;
-            if (is_overflow(&v[i], seen, distance / first))
+            if (is_overflow(&v[i], distance / first))
                 return seen ? INFINITY : NAN;
             if (too_far(&v[i]))
                 return distance;
