@@ -193,7 +193,8 @@ libnevh_core_la_SOURCES = \
 	lib/run/branch_private.h \
 	lib/run/fraction_private.h \
 	lib/run/branch.c \
-	lib/run/until.c \
+	lib/run/orbit.c \
+	lib/run/run_at_private.h \
 	lib/run/run_at.c \
 	lib/run/section_private.h \
 	lib/run/section.c \

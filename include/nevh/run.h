@@ -168,7 +168,8 @@ typedef struct {
     nevh_observe_fn observe;
     void *data;
     size_t every; /* steps between calls; 0 means 1.  The first and the last
-                     state are always shown. */
+                     state are always shown.  observe may change it: the next call
+                     is at the next multiple. */
 } nevh_observer;
 
 /* `steps` steps of h from t0, the time of step i being t0 + i*h (the sum of
@@ -212,7 +213,34 @@ NEVH_API int nevh_run_at(nevh_stepper *, double t0, double h, double t_end,
                          const double times[], size_t count, double states[],
                          size_t *kept, double q[], double p[],
                          const nevh_observer observers[], size_t n_observers);
-/* Steps that the last nevh_run, nevh_run_until or nevh_run_at completed. */
+/* A run to t_end and what is asked of it; what is 0 is not asked. */
+typedef struct {
+    double t0, h, t_end; /* as of nevh_run_until */
+    const nevh_observer *observers;
+    size_t n_observers;
+    /* Samples: sample(sample_data, i, times[i], q, p) is called at each of n_times
+       times, in the order in which the run passes them; a result other than 0
+       stops the run.  times NULL: at equal distances, the first at t0, the last at
+       t_end. */
+    const double *times;
+    size_t n_times;
+    nevh_observe_fn sample;
+    void *sample_data;
+    /* Of a run that continues one that was saved: steps and samples before, and
+       the time of the state. */
+    size_t steps_before, samples_before;
+    double t_before;
+} nevh_orbit;
+/* As nevh_run_until, with samples as those of nevh_run_at.  Observers of a state
+   are called before samples between it and the next step (after those before it
+   where the scheme chooses its own time, or holds series), and may save the
+   stepper: it and q, p are all that a run needs to continue to the last bit.
+   Steps that no observer or sample needs are taken in batches.
+   q, p     in and out, n x width; with samples the width is 1
+   returns  as nevh_run_at; NEVH_STOPPED where an observer or sample stopped it */
+NEVH_API int nevh_orbit_run(nevh_stepper *, const nevh_orbit *, double q[],
+                            double p[]);
+/* Steps that the last run completed, with those before it of nevh_orbit. */
 NEVH_API size_t nevh_stepper_taken(const nevh_stepper *);
 
 #ifdef __cplusplus

@@ -6,16 +6,16 @@
 #include <nevh/reference.h>
 #include <stdlib.h>
 
-typedef NEVH__FINE(nevh__orbit) orbit;
+typedef NEVH__FINE(nevh__series_orbit) orbit;
 
 /* Series up to the end, or until they have cost a second or so. */
 static double follow(orbit *o, double t1) {
     static const double most_work = 5e8; /* nanoseconds or so */
-    double most = most_work / NEVH__FINE(nevh__orbit_work)(o);
+    double most = most_work / NEVH__FINE(nevh__series_orbit_work)(o);
     nevh__report ignored = {0};
     while ((double)o->count < most &&
            fabs((double)(t1 - o->t)) > (double)o->reach)
-        if (NEVH__FINE(nevh__orbit_next)(o, t1, &ignored))
+        if (NEVH__FINE(nevh__series_orbit_next)(o, t1, &ignored))
             return o->ended ? (double)o->t : NAN;
     return NAN;
 }
@@ -27,7 +27,7 @@ static bool start(orbit *o, double t0, const double q[], const double p[]) {
     for (size_t k = 0; state && k < n; k++)
         state[k] = q[k], state[n + k] = p[k];
     bool started =
-        state && !NEVH__FINE(nevh__orbit_start)(o, t0, state, &ignored);
+        state && !NEVH__FINE(nevh__series_orbit_start)(o, t0, state, &ignored);
     free(state);
     return started;
 }
@@ -47,7 +47,7 @@ double nevh_solution_ends(const nevh_system *s, double t0, double t1,
     nevh__recurrence *series =
         rates ? nevh__recurrence_new(s, damped ? rates : NULL, timed, &ignored)
               : NULL;
-    if (series && NEVH__FINE(nevh__orbit_init)(&o, series, tolerance)) {
+    if (series && NEVH__FINE(nevh__series_orbit_init)(&o, series, tolerance)) {
         o.longest = fabs(t1 - t0);
         o.shortest = shortest;
         o.timing = timing;
@@ -56,7 +56,7 @@ double nevh_solution_ends(const nevh_system *s, double t0, double t1,
             ends = follow(&o, t1);
     }
     fesetenv(&own);
-    NEVH__FINE(nevh__orbit_clear)(&o);
+    NEVH__FINE(nevh__series_orbit_clear)(&o);
     nevh__recurrence_free(series);
     nevh_timing_free(timing);
     free(rates);

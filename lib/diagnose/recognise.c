@@ -316,7 +316,7 @@ static bool is_usable(const region *r) {
 }
 
 /* dp = dq/dt and dq = -dp/dt from series of an order as low as can be. */
-static bool take_series(trial *b, NEVH__FINE(nevh__orbit) * orbit) {
+static bool take_series(trial *b, NEVH__FINE(nevh__series_orbit) * orbit) {
     size_t n = b->n;
     nevh__wide state[2 * NEVH__EXACT_DOF];
     long double *rows = nevh__array(2 * n * (orbit->order + 1), sizeof *rows);
@@ -327,10 +327,11 @@ static bool take_series(trial *b, NEVH__FINE(nevh__orbit) * orbit) {
             state[k] = b->q[k * STATES + i];
             state[n + k] = b->p[k * STATES + i];
         }
-        taken = !NEVH__FINE(nevh__orbit_start)(orbit, b->t[i], state, &ignored);
+        taken = !NEVH__FINE(nevh__series_orbit_start)(orbit, b->t[i], state,
+                                                      &ignored);
         if (!taken)
             break;
-        NEVH__FINE(nevh__orbit_rows)(orbit, rows);
+        NEVH__FINE(nevh__series_orbit_rows)(orbit, rows);
         for (size_t k = 0; k < n; k++) {
             b->dp[k * STATES + i] = rows[2 * n + k];
             b->dq[k * STATES + i] = -rows[3 * n + k];
@@ -345,18 +346,19 @@ static bool take_series(trial *b, NEVH__FINE(nevh__orbit) * orbit) {
 static void refine(trial *b, nevh__exact_solution *e, const region *r) {
     static const double tolerance = 0.1;
     nevh__exact_solution finer = *e;
-    NEVH__FINE(nevh__orbit) orbit = {0};
+    NEVH__FINE(nevh__series_orbit) orbit = {0};
     nevh__report ignored = {0};
     nevh__recurrence *series =
         nevh__recurrence_new(b->system, NULL, false, &ignored);
-    if (series && NEVH__FINE(nevh__orbit_init)(&orbit, series, tolerance) &&
+    if (series &&
+        NEVH__FINE(nevh__series_orbit_init)(&orbit, series, tolerance) &&
         take_series(b, &orbit)) {
         fit(b, &finer);
         b->least_doubt = 0;
         if (fits(b, &finer, r) && finer.doubt < e->doubt)
             *e = finer;
     }
-    NEVH__FINE(nevh__orbit_clear)(&orbit);
+    NEVH__FINE(nevh__series_orbit_clear)(&orbit);
     nevh__recurrence_free(series);
 }
 

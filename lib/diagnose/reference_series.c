@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef NEVH__FINE(nevh__orbit) orbit;
+typedef NEVH__FINE(nevh__series_orbit) orbit;
 
 static const double usual = 1e-20; /* tolerance of the finer run */
 static const double finer = 10;    /* than the other one */
@@ -48,8 +48,8 @@ enum { TIMES = 2 }; /* before the rows */
 void nevh__reference_series_free(chain *c) {
     if (!c)
         return;
-    NEVH__FINE(nevh__orbit_clear)(&c->fine);
-    NEVH__FINE(nevh__orbit_clear)(&c->coarse);
+    NEVH__FINE(nevh__series_orbit_clear)(&c->fine);
+    NEVH__FINE(nevh__series_orbit_clear)(&c->coarse);
     nevh__recurrence_free(c->recurrence);
     free(c->rates);
     free(c->kept);
@@ -61,8 +61,8 @@ void nevh__reference_series_free(chain *c) {
 }
 
 static double work_of(const chain *c) {
-    return NEVH__FINE(nevh__orbit_work)(&c->fine) +
-           NEVH__FINE(nevh__orbit_work)(&c->coarse);
+    return NEVH__FINE(nevh__series_orbit_work)(&c->fine) +
+           NEVH__FINE(nevh__series_orbit_work)(&c->coarse);
 }
 
 /* Of as many series where they are thin. */
@@ -91,9 +91,9 @@ static int plan(nevh_reference *r, chain *c, double tolerance) {
     if (!c->recurrence)
         return r->report.status;
     bool made =
-        NEVH__FINE(nevh__orbit_init)(&c->fine, c->recurrence, tolerance);
-    made = NEVH__FINE(nevh__orbit_init)(&c->coarse, c->recurrence,
-                                        finer * tolerance) &&
+        NEVH__FINE(nevh__series_orbit_init)(&c->fine, c->recurrence, tolerance);
+    made = NEVH__FINE(nevh__series_orbit_init)(&c->coarse, c->recurrence,
+                                               finer * tolerance) &&
            made;
     if (!made)
         return out_of_memory(r);
@@ -112,11 +112,11 @@ static int start(nevh_reference *r, chain *c) {
         return out_of_memory(r);
     for (size_t k = 0; k < 2 * r->n; k++)
         state[k] = r->start[k];
-    int status =
-        NEVH__FINE(nevh__orbit_start)(&c->coarse, r->t0, state, &r->report);
+    int status = NEVH__FINE(nevh__series_orbit_start)(&c->coarse, r->t0, state,
+                                                      &r->report);
     if (!status)
-        status =
-            NEVH__FINE(nevh__orbit_start)(&c->fine, r->t0, state, &r->report);
+        status = NEVH__FINE(nevh__series_orbit_start)(&c->fine, r->t0, state,
+                                                      &r->report);
     free(state);
     return status;
 }
@@ -154,7 +154,7 @@ static bool keep(const nevh_reference *r, chain *c) {
     nevh__wide passed = c->fine.t - r->t0;
     to[0] = (long double)passed;
     to[1] = (long double)(passed - to[0]);
-    NEVH__FINE(nevh__orbit_rows)(&c->fine, c->shown);
+    NEVH__FINE(nevh__series_orbit_rows)(&c->fine, c->shown);
     memcpy(to + TIMES, c->shown, (c->each - TIMES) * sizeof *to);
     c->at = c->count++;
     return true;
@@ -170,9 +170,9 @@ static const long double *rows_of(const nevh_reference *r, chain *c, size_t i) {
     for (size_t k = 0; k < 2 * r->n; k++)
         c->fine.state[k] = kept[TIMES + k];
     nevh__report ignored = {0}; /* it was finite before */
-    NEVH__FINE(nevh__orbit_start)
+    NEVH__FINE(nevh__series_orbit_start)
     (&c->fine, (nevh__wide)r->t0 + kept[0] + kept[1], c->fine.state, &ignored);
-    NEVH__FINE(nevh__orbit_rows)(&c->fine, c->shown);
+    NEVH__FINE(nevh__series_orbit_rows)(&c->fine, c->shown);
     c->at = i;
     return c->shown;
 }
@@ -258,10 +258,11 @@ static int run(nevh_reference *r, chain *c) {
     if (!status)
         look(r, c);
     while (!status && (c->until - c->fine.t) * forward > c->fine.reach) {
-        status = NEVH__FINE(nevh__orbit_next)(&c->fine, c->until, &r->report);
+        status =
+            NEVH__FINE(nevh__series_orbit_next)(&c->fine, c->until, &r->report);
         if (!status)
-            status =
-                NEVH__FINE(nevh__orbit_go)(&c->coarse, c->fine.t, &r->report);
+            status = NEVH__FINE(nevh__series_orbit_go)(&c->coarse, c->fine.t,
+                                                       &r->report);
         if (!status && !keep(r, c))
             status = out_of_memory(r);
         if (status)
@@ -277,9 +278,11 @@ static int run(nevh_reference *r, chain *c) {
             return part_at(r, c);
     }
     if (!status)
-        status = NEVH__FINE(nevh__orbit_go)(&c->coarse, c->until, &r->report);
+        status =
+            NEVH__FINE(nevh__series_orbit_go)(&c->coarse, c->until, &r->report);
     if (!status)
-        status = NEVH__FINE(nevh__orbit_go)(&c->fine, c->until, &r->report);
+        status =
+            NEVH__FINE(nevh__series_orbit_go)(&c->fine, c->until, &r->report);
     if (!status)
         compare(r, c);
     return status;

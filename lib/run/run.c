@@ -1,31 +1,46 @@
 /* nevh: the driver.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "run/stepper_private.h"
+#include "run/run_at_private.h"
 
-int nevh__show(nevh_stepper *s, size_t step, bool last, double t,
-               const double q[], const double p[],
-               const nevh_observer observers[], size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        size_t every = observers[i].every ? observers[i].every : 1;
-        if (step % every != 0 && !last)
+int nevh__show(nevh__running *r, bool last, double t) {
+    nevh_stepper *s = r->stepper;
+    const nevh_orbit *o = r->orbit;
+    bool sampled =
+        r->samples && (last || nevh__samples_step(r->samples) <= s->taken);
+    int status =
+        sampled ? nevh__samples_at(r->samples, t, r->q, r->p) : NEVH_OK;
+    for (size_t i = 0; !status && i < o->n_observers; i++) {
+        const nevh_observer *one = &o->observers[i];
+        if (s->taken % (one->every ? one->every : 1) != 0 && !last)
             continue;
-        if (observers[i].observe(observers[i].data, step, t, q, p))
-            return nevh__fail(&s->report, NEVH_STOPPED,
-                              "observer %zu stopped the run at t = %.9g", i, t);
+        if (one->observe(one->data, s->taken, t, r->q, r->p))
+            status =
+                nevh__fail(&s->report, NEVH_STOPPED,
+                           "observer %zu stopped the run at t = %.9g", i, t);
     }
-    return NEVH_OK;
+    if (!status && sampled)
+        status = nevh__samples_after(r->samples, t, r->q, r->p);
+    return status;
 }
 
 double nevh__next_time(const nevh_stepper *s, double t0, double h) {
     return s->own_time ? s->last_t : t0 + (double)s->taken * h;
 }
 
-int nevh__begin_run(nevh_stepper *s, double t0, double h, const double q[],
-                    const double p[]) {
-    int status = nevh__begin(s, t0, h, q, p);
+double nevh__start_time(const nevh__running *r) {
+    return r->orbit->steps_before ? r->orbit->t_before : r->orbit->t0;
+}
+
+int nevh__begin_run(nevh__running *r) {
+    nevh_stepper *s = r->stepper;
+    int status = nevh__begin(s, nevh__start_time(r), r->h, r->q, r->p);
     if (s)
-        s->taken = 0;
-    return status;
+        s->taken = r->orbit->steps_before;
+    if (status)
+        return status;
+    s->now_q = r->q;
+    s->now_p = r->p;
+    return NEVH_OK;
 }
 
 /* Whether a step is no more than the kernel's. */
@@ -34,33 +49,37 @@ static bool plain(const nevh_stepper *s) {
            !s->own_time;
 }
 
-/* The next step after `taken` that somebody looks at, or the last one. */
-static size_t next_shown(size_t taken, size_t steps,
-                         const nevh_observer observers[], size_t count) {
-    size_t next = steps;
-    for (size_t i = 0; i < count; i++) {
-        size_t every = observers[i].every ? observers[i].every : 1;
+/* The next step that an observer or a sample needs, or the last one. */
+static size_t next_shown(const nevh__running *r, size_t steps) {
+    const nevh_orbit *o = r->orbit;
+    size_t taken = r->stepper->taken, next = steps;
+    if (r->samples && nevh__samples_step(r->samples) < next)
+        next = nevh__samples_step(r->samples);
+    for (size_t i = 0; i < o->n_observers; i++) {
+        size_t every = o->observers[i].every ? o->observers[i].every : 1;
         size_t rest = every - taken % every;
         next = rest < next - taken ? taken + rest : next;
     }
     return next;
 }
 
-/* Steps before `until`, at which nobody looks; *t goes along. */
-static int run_unseen(nevh_stepper *s, double t0, double h, size_t until,
-                      double *t, double q[], double p[]) {
+/* Unobserved steps, before `until`; *t goes along. */
+static int run_unseen(nevh__running *r, size_t until, double *t) {
+    nevh_stepper *s = r->stepper;
     nevh_work *w = &s->work;
+    double t0 = r->orbit->t0, h = r->h;
     int status = NEVH_OK;
     s->last_h = w->elapsed = h;
     while (s->taken + 1 < until) {
-        size_t done = w->native ? nevh__native_run(w, t0, h, s->taken,
-                                                   until - 1 - s->taken, q, p)
-                                : 0;
+        size_t done = w->native
+                          ? nevh__native_run(w, t0, h, s->taken,
+                                             until - 1 - s->taken, r->q, r->p)
+                          : 0;
         s->taken += done;
         *t = s->last_t = nevh__next_time(s, t0, h);
         if (s->taken + 1 == until)
             break;
-        status = nevh__work_step(w, *t, h, q, p);
+        status = nevh__work_step(w, *t, h, r->q, r->p);
         if (status)
             break;
         s->taken++;
@@ -69,42 +88,43 @@ static int run_unseen(nevh_stepper *s, double t0, double h, size_t until,
     return status;
 }
 
-int nevh__run_steps(nevh_stepper *s, double t0, double h, size_t steps,
-                    bool ends, double q[], double p[],
-                    const nevh_observer observers[], size_t count) {
-    double t = t0;
+int nevh__run_steps(nevh__running *r, size_t steps, bool ends) {
+    nevh_stepper *s = r->stepper;
+    double t = nevh__start_time(r);
     bool hurries = plain(s);
-    int status =
-        nevh__show(s, 0, ends && steps == 0, t, q, p, observers, count);
+    int status = nevh__show(r, ends && s->taken >= steps, t);
     while (!status && s->taken < steps) {
-        size_t next = next_shown(s->taken, steps, observers, count);
+        size_t next = next_shown(r, steps);
         if (hurries && next > s->taken + 1)
-            status = run_unseen(s, t0, h, next, &t, q, p);
+            status = run_unseen(r, next, &t);
         if (!status)
-            status = nevh__advance(s, t, h, q, p);
+            status = nevh__advance(s, t, r->h, r->q, r->p);
         if (status)
             break;
         s->taken++;
-        t = s->last_t = nevh__next_time(s, t0, h);
-        status = nevh__show(s, s->taken, ends && s->taken == steps, t, q, p,
-                            observers, count);
+        t = s->last_t = nevh__next_time(s, r->orbit->t0, r->h);
+        status = nevh__show(r, ends && s->taken == steps, t);
     }
     return status;
 }
 
-void nevh__end_run(nevh_stepper *s, const double q[], const double p[]) {
-    if (s->taken > 0)
-        nevh__remember(s, q, p);
+void nevh__end_run(nevh__running *r) {
+    nevh_stepper *s = r->stepper;
+    s->now_q = s->now_p = NULL;
+    if (s->taken > r->orbit->steps_before)
+        nevh__remember(s, r->q, r->p);
     else
         nevh__undo(s);
 }
 
 int nevh_run(nevh_stepper *s, double t0, double h, size_t steps, double q[],
              double p[], const nevh_observer observers[], size_t count) {
-    int status = nevh__begin_run(s, t0, h, q, p);
+    nevh_orbit orbit = {.t0 = t0, .observers = observers, .n_observers = count};
+    nevh__running r = {s, &orbit, h, q, p, NULL};
+    int status = nevh__begin_run(&r);
     if (status)
         return status;
-    status = nevh__run_steps(s, t0, h, steps, true, q, p, observers, count);
-    nevh__end_run(s, q, p);
+    status = nevh__run_steps(&r, steps, true);
+    nevh__end_run(&r);
     return status;
 }

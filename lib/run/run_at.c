@@ -1,94 +1,100 @@
-/* nevh: a run, and its states at given times.
+/* nevh: states of a run at given times.
 
-   An observer of each step branches off to the times that come before the next
-   one.  Where steps take times of their own, it does so afterwards, from what
-   it kept of the step before.  So it does where the memory of a scheme holds the
+   Of fixed steps, a state branches off to the times that come before the next
+   one.  Where steps take times of their own, that is done afterwards, from what
+   was kept of the step before.  So it is where the memory of a scheme holds the
    orbit beside a state, as series do: there the state before the step, that after
    it, or the last one branched off to is a place from which others are read.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "run/branch_private.h"
+#include "run/run_at_private.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-typedef struct {
+struct nevh__samples {
+    const nevh__running *run;
     nevh_stepper *stepper;
     nevh__branch from, now; /* now: where states are found afterwards */
     nevh__branch
-        tried; /* the last state that was not to be read; t: NAN if none */
-    const double *times;
-    size_t count, kept;
-    double *states;
-    double h, t_end;     /* h as the run adjusts it */
-    int status;          /* of a branch, */
-    nevh__report report; /* and what it said */
-} sampler;
+        tried;   /* the last state that was not to be read; t: NAN if none */
+    size_t next; /* of the times */
+    size_t step; /* the next one needed */
+    double h;    /* as adjusted */
+};
+
+static double time_of(const nevh__samples *a, size_t i) {
+    const nevh_orbit *o = a->run->orbit;
+    size_t others = o->n_times - 1;
+    if (o->times)
+        return o->times[i];
+    return i == others
+               ? o->t_end
+               : o->t0 + (o->t_end - o->t0) * ((double)i / (double)others);
+}
+
+static bool is_left(const nevh__samples *a) {
+    return a->next < a->run->orbit->n_times;
+}
 
 /* Times that only rounding makes different. */
-static bool same(const sampler *a, double t, double u) {
+static bool same(const nevh__samples *a, double t, double u) {
     double size = fabs(t) + fabs(u) + fabs(a->h);
     return t == u || fabs(t - u) < 8 * DBL_EPSILON * size;
 }
 
 /* Whether the next time is passed before t. */
-static bool is_due(const sampler *a, double t) {
-    return a->kept < a->count && (t - a->times[a->kept]) * a->h > 0 &&
-           !same(a, a->times[a->kept], t);
+static bool is_due(const nevh__samples *a, double t) {
+    if (!is_left(a))
+        return false;
+    double due = time_of(a, a->next);
+    return (t - due) * a->h > 0 && !same(a, due, t);
 }
 
-static void put(sampler *a, const double q[], const double p[]) {
-    size_t n = a->stepper->work.n;
-    for (size_t k = 0; k < n; k++) {
-        a->states[k * a->count + a->kept] = q[k];
-        a->states[(n + k) * a->count + a->kept] = p[k];
-    }
-    a->kept++;
+static int put(nevh__samples *a, const double q[], const double p[]) {
+    const nevh_orbit *o = a->run->orbit;
+    size_t i = a->next++;
+    double t = time_of(a, i);
+    if (!o->sample(o->sample_data, i, t, q, p))
+        return NEVH_OK;
+    return nevh__fail(&a->stepper->report, NEVH_STOPPED,
+                      "sample %zu stopped the run at t = %.9g", i, t);
 }
 
 /* The states from that of `from` on, before t. */
-static int branch_before(sampler *a, double t) {
-    while (!a->status && is_due(a, t)) {
-        a->from.t_end = a->times[a->kept];
+static int branch_before(nevh__samples *a, double t) {
+    int status = NEVH_OK;
+    while (!status && is_due(a, t)) {
+        a->from.t_end = time_of(a, a->next);
         if (!a->stepper->own_time)
             a->from.h = a->from.t_end - a->from.t;
-        a->status = nevh__branch_step(&a->from);
-        if (!a->status)
-            put(a, a->from.q_end, a->from.p_end);
+        status = nevh__branch_step(&a->from);
+        if (!status)
+            status = put(a, a->from.q_end, a->from.p_end);
     }
-    if (a->status)
-        a->report = a->stepper->report;
-    return a->status;
-}
-
-static void put_here(sampler *a, double t, const double q[], const double p[]) {
-    while (a->kept < a->count && same(a, a->times[a->kept], t))
-        put(a, q, p);
-}
-
-static int sample_fixed(sampler *a, double t, const double q[],
-                        const double p[]) {
-    double next = fabs(a->t_end - t) < fabs(a->h) ? a->t_end : t + a->h;
-    put_here(a, t, q, p);
-    if (!is_due(a, next))
-        return NEVH_OK;
-    nevh__branch_keep(&a->from, t, q, p);
-    int status = branch_before(a, next);
-    nevh__branch_resume(&a->from);
     return status;
 }
 
-static int sample_own(sampler *a, double t, const double q[],
+static int put_here(nevh__samples *a, double t, const double q[],
+                    const double p[]) {
+    int status = NEVH_OK;
+    while (!status && is_left(a) && same(a, time_of(a, a->next), t))
+        status = put(a, q, p);
+    return status;
+}
+
+static int sample_own(nevh__samples *a, double t, const double q[],
                       const double p[]) {
     int status = NEVH_OK;
     if (is_due(a, t)) {
         nevh__branch_keep(&a->now, t, q, p);
         a->from.h = a->h;
-        a->status = nevh__branch_measure(&a->from);
-        status = branch_before(a, t);
+        status = nevh__branch_measure(&a->from);
+        if (!status)
+            status = branch_before(a, t);
         nevh__branch_resume(&a->now);
     }
-    put_here(a, t, q, p);
+    if (!status)
+        status = put_here(a, t, q, p);
     nevh__branch_keep(&a->from, t, q, p);
     return status;
 }
@@ -100,10 +106,10 @@ static bool is_held(const nevh_stepper *s) {
 
 /* Steps to the next time from where that needs no evaluations, or else from the
    start of the step. */
-static int read_next(sampler *a) {
+static int read_next(nevh__samples *a) {
     const nevh_work *w = &a->stepper->work;
     nevh__branch *places[] = {&a->from, &a->now, &a->tried}, *b = NULL;
-    double due = a->times[a->kept];
+    double due = time_of(a, a->next);
     for (size_t i = 0; !b && i < 3; i++)
         if (w->integrator->kernel->holds(w, places[i]->memory,
                                          due - places[i]->t))
@@ -114,35 +120,40 @@ static int read_next(sampler *a) {
     b->h = due - b->t;
     int status = nevh__branch_step(b);
     if (!status)
-        put(a, b->q_end, b->p_end);
+        status = put(a, b->q_end, b->p_end);
     if (!status && !read)
         nevh__branch_keep(&a->tried, due, b->q_end, b->p_end);
     return status;
 }
 
-static int sample_held(sampler *a, double t, const double q[],
+static int sample_held(nevh__samples *a, double t, const double q[],
                        const double p[]) {
+    int status = NEVH_OK;
     if (is_due(a, t)) {
         nevh__branch_keep(&a->now, t, q, p);
         a->tried.t = NAN;
-        while (!a->status && is_due(a, t))
-            a->status = read_next(a);
-        if (a->status)
-            a->report = a->stepper->report;
+        while (!status && is_due(a, t))
+            status = read_next(a);
         nevh__branch_resume(&a->now);
     }
-    put_here(a, t, q, p);
+    if (!status)
+        status = put_here(a, t, q, p);
     nevh__branch_keep(&a->from, t, q, p);
-    return a->status;
+    return status;
 }
 
-/* What comes before the place within a step where that failed. */
-static void read_before_failure(sampler *a, const double q[],
-                                const double p[]) {
+/* Where the next step from t ends. */
+static double step_end(const nevh__samples *a, double t) {
+    double t_end = a->run->orbit->t_end;
+    return fabs(t_end - t) < fabs(a->h) ? t_end : t + a->h;
+}
+
+void nevh__samples_rest(nevh__samples *a, const double q[], const double p[]) {
+    if (!is_held(a->stepper))
+        return;
     nevh__report report = a->stepper->report;
     double last = a->stepper->last_t;
-    double left = a->t_end - a->from.t;
-    double next = fabs(left) < fabs(a->h) ? a->t_end : a->from.t + a->h;
+    double next = step_end(a, a->from.t);
     nevh__branch_keep(&a->now, last, q, p);
     a->now.t = a->tried.t = NAN;
     while (is_due(a, next) && !read_next(a))
@@ -152,84 +163,101 @@ static void read_before_failure(sampler *a, const double q[],
     a->stepper->report = report;
 }
 
-static int sample(void *data, size_t step, double t, const double q[],
-                  const double p[]) {
-    sampler *a = data;
-    (void)step;
+int nevh__samples_at(nevh__samples *a, double t, const double q[],
+                     const double p[]) {
     if (is_held(a->stepper))
         return sample_held(a, t, q, p);
-    return (a->stepper->own_time ? sample_own : sample_fixed)(a, t, q, p);
+    return a->stepper->own_time ? sample_own(a, t, q, p) : put_here(a, t, q, p);
 }
 
-static int check(const sampler *a, double t0) {
+/* Fixed steps that need not be shown are those well before the next time. */
+static void foresee(nevh__samples *a, double t) {
+    static const double slack = 3; /* steps, for rounding */
+    bool all = a->stepper->own_time || is_held(a->stepper);
+    size_t taken = a->stepper->taken;
+    double ahead = is_left(a) ? (time_of(a, a->next) - t) / a->h : INFINITY;
+    a->step = taken + 1;
+    if (!all && ahead > slack)
+        a->step = taken + (size_t)fmin(ahead - slack + 1, 0x1p53);
+}
+
+int nevh__samples_after(nevh__samples *a, double t, const double q[],
+                        const double p[]) {
+    int status = NEVH_OK;
+    double next = step_end(a, t);
+    if (!a->stepper->own_time && !is_held(a->stepper) && is_due(a, next)) {
+        nevh__branch_keep(&a->from, t, q, p);
+        status = branch_before(a, next);
+        nevh__branch_resume(&a->from);
+    }
+    foresee(a, t);
+    return status;
+}
+
+size_t nevh__samples_step(const nevh__samples *a) {
+    return a->step;
+}
+
+static int check(const nevh__samples *a) {
+    const nevh_orbit *o = a->run->orbit;
     nevh__report *r = &a->stepper->report;
-    double last = t0;
+    double last = o->t0;
     if (a->stepper->work.width != 1)
         return nevh__fail(r, NEVH_EINVAL,
                           "states at given times are of one orbit, not of %zu "
                           "side by side",
                           a->stepper->work.width);
-    for (size_t i = 0; i < a->count; i++) {
-        double t = a->times[i];
-        if (!((t - last) * a->h >= 0 && (a->t_end - t) * a->h >= 0))
+    if (!o->times && o->n_times < 2)
+        return nevh__fail(r, NEVH_EINVAL,
+                          "samples at equal distances are at least 2");
+    for (size_t i = 0; o->times && i < o->n_times; i++) {
+        double t = o->times[i];
+        if (!((t - last) * a->h >= 0 && (o->t_end - t) * a->h >= 0))
             return nevh__fail(
                 r, NEVH_EINVAL,
                 "time %zu, %.9g, is not between %.9g and %.9g, or "
                 "not in the order of the run",
-                i, t, last, a->t_end);
+                i, t, last, o->t_end);
         last = t;
     }
     return NEVH_OK;
 }
 
-static int run_sampled(sampler *a, double t0, double h, double q[], double p[],
-                       const nevh_observer observers[], size_t count) {
-    nevh_observer *all = nevh__array(count + 1, sizeof *all);
-    int status = all ? nevh__branch_open(&a->from, a->stepper) : NEVH_ENOMEM;
+static int plan(nevh__samples *a) {
+    nevh_stepper *s = a->stepper;
+    double steps;
+    if (!s->own_time)
+        nevh__whole_steps(a->run->orbit->t_end - a->run->orbit->t0, &a->h,
+                          &steps);
+    int status = check(a);
     if (!status)
-        status = nevh__branch_open(&a->now, a->stepper);
+        status = nevh__branch_open(&a->from, s);
     if (!status)
-        status = nevh__branch_open(&a->tried, a->stepper);
-    if (all && count)
-        memcpy(all + 1, observers, count * sizeof *all);
-    if (all)
-        all[0] = (nevh_observer){sample, a, 1};
-    if (!status)
-        status =
-            nevh_run_until(a->stepper, t0, h, a->t_end, q, p, all, count + 1);
-    else
-        nevh__fail(&a->stepper->report, status, "out of memory");
-    if (status && status != NEVH_STOPPED && all && a->tried.q &&
-        is_held(a->stepper))
-        read_before_failure(a, q, p);
+        status = nevh__branch_open(&a->now, s);
+    return status ? status : nevh__branch_open(&a->tried, s);
+}
+
+nevh__samples *nevh__samples_new(const nevh__running *r) {
+    nevh__samples *a = calloc(1, sizeof *a);
+    if (!a) {
+        nevh__fail(&r->stepper->report, NEVH_ENOMEM, "out of memory");
+        return NULL;
+    }
+    *a = (nevh__samples){.run = r,
+                         .stepper = r->stepper,
+                         .h = r->orbit->h,
+                         .next = r->orbit->samples_before};
+    if (!plan(a))
+        return a;
+    nevh__samples_free(a);
+    return NULL;
+}
+
+void nevh__samples_free(nevh__samples *a) {
+    if (!a)
+        return;
     nevh__branch_close(&a->from);
     nevh__branch_close(&a->now);
     nevh__branch_close(&a->tried);
-    free(all);
-    return a->status ? nevh__fail_as(&a->stepper->report, &a->report) : status;
-}
-
-int nevh_run_at(nevh_stepper *s, double t0, double h, double t_end,
-                const double times[], size_t count, double states[],
-                size_t *kept, double q[], double p[],
-                const nevh_observer observers[], size_t n_observers) {
-    double steps;
-    sampler a = {.stepper = s,
-                 .times = times,
-                 .count = count,
-                 .states = states,
-                 .h = h,
-                 .t_end = t_end};
-    if (kept)
-        *kept = 0;
-    if (!s || !s->planned || count == 0 || !(fabs(h) > 0))
-        return nevh_run_until(s, t0, h, t_end, q, p, observers, n_observers);
-    if (!s->own_time)
-        nevh__whole_steps(t_end - t0, &a.h, &steps);
-    int status = check(&a, t0);
-    if (!status)
-        status = run_sampled(&a, t0, h, q, p, observers, n_observers);
-    if (kept)
-        *kept = a.kept;
-    return status;
+    free(a);
 }

@@ -13,7 +13,7 @@ typedef struct {
 } header;
 
 static header describe(const nevh_stepper *s) {
-    header h = {.magic = "nevh-2", .has_last = s->has_last};
+    header h = {.magic = "nevh-2", .has_last = s->has_last || s->now_q};
     strncpy(h.integrator, s->work.integrator->name, sizeof h.integrator - 1);
     h.n = s->work.n;
     h.width = s->work.width;
@@ -30,6 +30,14 @@ static void list_parts(const nevh_stepper *s, double *part[3], size_t size[3]) {
     part[2] = s->last_p;
     size[0] = s->rows * s->work.width * sizeof(double);
     size[1] = size[2] = s->work.size * sizeof(double);
+}
+
+/* In a run the last state is not the one that a call returned. */
+static void take_state_under_way(const nevh_stepper *s, double *part[3]) {
+    if (!s->now_q)
+        return;
+    part[1] = s->now_q;
+    part[2] = s->now_p;
 }
 
 size_t nevh_stepper_save_size(const nevh_stepper *s) {
@@ -54,6 +62,7 @@ void nevh_stepper_save(const nevh_stepper *s, void *buffer) {
     memcpy(to, &h, sizeof h);
     to += sizeof h;
     list_parts(s, part, size);
+    take_state_under_way(s, part);
     for (int i = 0; i < 3; to += size[i++])
         memcpy(to, part[i], size[i]);
 }
@@ -102,9 +111,10 @@ nevh_stepper *nevh_stepper_copy(const nevh_stepper *s) {
     size_t size[3];
     list_parts(copy, to, size);
     list_parts(s, from, size);
+    take_state_under_way(s, from);
     for (int i = 0; !stale && i < 3; i++)
         memcpy(to[i], from[i], size[i]);
-    copy->has_last = s->has_last;
+    copy->has_last = s->has_last || s->now_q;
     copy->last_t = s->last_t;
     copy->time_roundoff = s->time_roundoff;
     return copy;

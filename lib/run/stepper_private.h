@@ -27,7 +27,8 @@ struct nevh_stepper {
     bool forgot;    /* the last step or run began with less than `before` */
     double *before; /* the memory before that */
     size_t taken;
-    double time_roundoff; /* of last_t, where steps vary, by rounding */
+    double *now_q, *now_p; /* the state of a run under way, or NULL */
+    double time_roundoff;  /* of last_t, where steps vary, by rounding */
     double before_t, before_roundoff; /* last_t and time_roundoff before that */
     char why_native[NEVH__WHY_NATIVE]; /* why steps are not native, or "" */
 };
@@ -40,21 +41,26 @@ int nevh__advance(nevh_stepper *, double t, double h, double q[], double p[]);
 int nevh__begin(nevh_stepper *, double t, double h, const double q[],
                 const double p[]);
 
-/* The parts of a run.  Shows the state to the observers whose turn it is, and
-   the last one to all. */
-int nevh__show(nevh_stepper *, size_t step, bool last, double t,
-               const double q[], const double p[],
-               const nevh_observer observers[], size_t count);
+/* A run under way. */
+typedef struct {
+    nevh_stepper *stepper;
+    const nevh_orbit *orbit;
+    double h; /* as adjusted to the end */
+    double *q, *p;
+    struct nevh__samples *samples; /* NULL: none */
+} nevh__running;
+
+/* Shows the state to the observers whose turn it is, and the last one to all. */
+int nevh__show(nevh__running *, bool last, double t);
 /* The time after the step just taken: t0 + i h, or the sum of the times that
    the scheme took, with compensation. */
 double nevh__next_time(const nevh_stepper *, double t0, double h);
-int nevh__begin_run(nevh_stepper *, double t0, double h, const double q[],
-                    const double p[]);
-/* ends: the last of the steps is the last of the run. */
-int nevh__run_steps(nevh_stepper *, double t0, double h, size_t steps,
-                    bool ends, double q[], double p[],
-                    const nevh_observer observers[], size_t count);
-void nevh__end_run(nevh_stepper *, const double q[], const double p[]);
+/* The time of the first state. */
+double nevh__start_time(const nevh__running *);
+int nevh__begin_run(nevh__running *);
+/* Until `steps` are taken.  ends: the last of them is the last of the run. */
+int nevh__run_steps(nevh__running *, size_t steps, bool ends);
+void nevh__end_run(nevh__running *);
 /* NEVH_OK where some number of steps leads from t0 to t_end; not where one of the
    three is no number. */
 int nevh__span_check(nevh_stepper *, double t0, double h, double t_end);

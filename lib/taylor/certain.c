@@ -16,8 +16,8 @@ enum { MOST_DIGITS = 30, ROOM = 60 };
    long. */
 typedef struct {
     bool pairs;
-    nevh__orbit_dd dd;
-    nevh__orbit_quad quad;
+    nevh__series_orbit_dd dd;
+    nevh__series_orbit_quad quad;
 } orbit;
 
 struct nevh_certain {
@@ -40,27 +40,29 @@ enum { DIGITS_OF_PAIRS = 24 };
 static const double rounding = 1e-32, rounding_of_pairs = 1e-31;
 
 static void clear(orbit *o) {
-    nevh__orbit_clear_dd(&o->dd);
-    nevh__orbit_clear_quad(&o->quad);
+    nevh__series_orbit_clear_dd(&o->dd);
+    nevh__series_orbit_clear_quad(&o->quad);
 }
 
 static int start(nevh_certain *c, orbit *o, bool pairs, double tolerance) {
     clear(o);
     o->pairs = pairs;
-    bool fine = o->pairs
-                    ? nevh__orbit_init_dd(&o->dd, c->recurrence, tolerance)
-                    : nevh__orbit_init_quad(&o->quad, c->recurrence, tolerance);
+    bool fine =
+        o->pairs
+            ? nevh__series_orbit_init_dd(&o->dd, c->recurrence, tolerance)
+            : nevh__series_orbit_init_quad(&o->quad, c->recurrence, tolerance);
     o->dd.timing = o->quad.timing = c->timing;
     o->dd.backward = o->quad.backward = c->seen < (double)c->t0;
-    return !fine ? nevh__fail(&c->report, NEVH_ENOMEM, "out of memory")
-           : o->pairs
-               ? nevh__orbit_start_dd(&o->dd, c->t0, c->start, &c->report)
-               : nevh__orbit_start_quad(&o->quad, c->t0, c->start, &c->report);
+    return !fine      ? nevh__fail(&c->report, NEVH_ENOMEM, "out of memory")
+           : o->pairs ? nevh__series_orbit_start_dd(&o->dd, c->t0, c->start,
+                                                    &c->report)
+                      : nevh__series_orbit_start_quad(&o->quad, c->t0, c->start,
+                                                      &c->report);
 }
 
 static int go(nevh_certain *c, orbit *o, nevh__wide t) {
-    return o->pairs ? nevh__orbit_go_dd(&o->dd, t, &c->report)
-                    : nevh__orbit_go_quad(&o->quad, t, &c->report);
+    return o->pairs ? nevh__series_orbit_go_dd(&o->dd, t, &c->report)
+                    : nevh__series_orbit_go_quad(&o->quad, t, &c->report);
 }
 
 static nevh__wide state(const orbit *o, size_t k) {

@@ -10,7 +10,7 @@
    Functions return a status, with a message in the report. */
 enum { NEVH__ORBIT_PAST = 128 };
 #define NEVH__ORBIT(kind, real, number)                                            \
-    typedef struct nevh__orbit_##kind {                                            \
+    typedef struct nevh__series_orbit_##kind {                                     \
         const nevh__recurrence *recurrence;                                        \
         struct nevh__series_##kind *series;                                        \
         struct nevh__series_##kind *probe; /* of low order, elsewhere */           \
@@ -37,21 +37,24 @@ enum { NEVH__ORBIT_PAST = 128 };
         const nevh_timing *timing; /* NULL: of no concern; borrowed */             \
         bool backward, stops; /* stops: the series holds up to a break, */         \
         real stop;            /* after which the next one begins */                \
-    } nevh__orbit_##kind;                                                          \
-    bool nevh__orbit_init_##kind(nevh__orbit_##kind *,                             \
-                                 const nevh__recurrence *, double tolerance);      \
-    void nevh__orbit_clear_##kind(nevh__orbit_##kind *);                           \
-    int nevh__orbit_start_##kind(nevh__orbit_##kind *, real t,                     \
-                                 const real state[], nevh__report *);              \
+    } nevh__series_orbit_##kind;                                                   \
+    bool nevh__series_orbit_init_##kind(nevh__series_orbit_##kind *,               \
+                                        const nevh__recurrence *,                  \
+                                        double tolerance);                         \
+    void nevh__series_orbit_clear_##kind(nevh__series_orbit_##kind *);             \
+    int nevh__series_orbit_start_##kind(nevh__series_orbit_##kind *, real t,       \
+                                        const real state[], nevh__report *);       \
     /* The next series, towards a time; */                                         \
-    int nevh__orbit_next_##kind(nevh__orbit_##kind *, real t, nevh__report *);     \
+    int nevh__series_orbit_next_##kind(nevh__series_orbit_##kind *, real t,        \
+                                       nevh__report *);                            \
     /* the state at a time, in `state`. */                                         \
-    int nevh__orbit_go_##kind(nevh__orbit_##kind *, real t, nevh__report *);       \
+    int nevh__series_orbit_go_##kind(nevh__series_orbit_##kind *, real t,          \
+                                     nevh__report *);                              \
     /* The rows of the present series, by a unit of 1. */                          \
-    void nevh__orbit_rows_##kind(const nevh__orbit_##kind *,                       \
-                                 long double rows[]);                              \
+    void nevh__series_orbit_rows_##kind(const nevh__series_orbit_##kind *,         \
+                                        long double rows[]);                       \
     /* What it costs, in nanoseconds or so: the same on any machine. */            \
-    double nevh__orbit_work_##kind(const nevh__orbit_##kind *);
+    double nevh__series_orbit_work_##kind(const nevh__series_orbit_##kind *);
 
 /* Names of the kind of orbit that references are of, and its bits; states are
    nevh__wide. */

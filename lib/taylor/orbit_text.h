@@ -11,12 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct NAMED(nevh__orbit) orbit;
+typedef struct NAMED(nevh__series_orbit) orbit;
 
 enum { PROBE_ORDER = 2 };
 
-bool NAMED(nevh__orbit_init)(orbit *o, const nevh__recurrence *r,
-                             double tolerance) {
+bool NAMED(nevh__series_orbit_init)(orbit *o, const nevh__recurrence *r,
+                                    double tolerance) {
     size_t order = (size_t)ceil(2 - 0.6 * log(tolerance));
     *o = (orbit){.recurrence = r,
                  .n = r->n,
@@ -39,7 +39,7 @@ bool NAMED(nevh__orbit_init)(orbit *o, const nevh__recurrence *r,
            o->start && o->state && o->most;
 }
 
-void NAMED(nevh__orbit_clear)(orbit *o) {
+void NAMED(nevh__series_orbit_clear)(orbit *o) {
     NAMED(nevh__series_free)(o->series);
     NAMED(nevh__series_free)(o->probe);
     free(o->rows);
@@ -233,8 +233,8 @@ static int begin(orbit *o, real t, const real state[], nevh__report *report) {
     return NEVH_OK;
 }
 
-int NAMED(nevh__orbit_start)(orbit *o, real t, const real state[],
-                             nevh__report *report) {
+int NAMED(nevh__series_orbit_start)(orbit *o, real t, const real state[],
+                                    nevh__report *report) {
     memcpy(o->state, state, 2 * o->n * sizeof *state);
     take_unit(o, o->longest);
     o->reach = o->unit;
@@ -264,7 +264,7 @@ static void evaluate(orbit *o, real since) {
     place(o, since, o->state);
 }
 
-int NAMED(nevh__orbit_next)(orbit *o, real t, nevh__report *report) {
+int NAMED(nevh__series_orbit_next)(orbit *o, real t, nevh__report *report) {
     static const double longer = 0x1p20;
     real next = t > o->t ? o->t + o->reach : o->t - o->reach;
     next = o->stops ? o->stop : next;
@@ -286,16 +286,16 @@ int NAMED(nevh__orbit_next)(orbit *o, real t, nevh__report *report) {
     return begin(o, next, o->state, report);
 }
 
-int NAMED(nevh__orbit_go)(orbit *o, real t, nevh__report *report) {
+int NAMED(nevh__series_orbit_go)(orbit *o, real t, nevh__report *report) {
     int status = NEVH_OK;
     while (!status && FUNCTION(fabs)(t - o->t) > o->reach)
-        status = NAMED(nevh__orbit_next)(o, t, report);
+        status = NAMED(nevh__series_orbit_next)(o, t, report);
     if (!status)
         evaluate(o, t - o->t);
     return status;
 }
 
-void NAMED(nevh__orbit_rows)(const orbit *o, long double rows[]) {
+void NAMED(nevh__series_orbit_rows)(const orbit *o, long double rows[]) {
     const number *row = o->rows;
     long double factor = 1;
     for (size_t k = 0; k <= o->order; k++, factor /= o->unit)
@@ -303,7 +303,7 @@ void NAMED(nevh__orbit_rows)(const orbit *o, long double rows[]) {
             *rows++ = lengthen(*row++) * factor;
 }
 
-double NAMED(nevh__orbit_work)(const orbit *o) {
+double NAMED(nevh__series_orbit_work)(const orbit *o) {
     const nevh__recurrence *r = o->recurrence;
     double order = (double)o->order, called = 0;
     for (size_t i = 0; i < r->n_batches; i++)

@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "setting.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { STEPS = 7, TIMES = 9 };
@@ -135,6 +136,163 @@ TEST(times_out_of_order_or_outside_are_refused) {
         ck_assert_uint_eq(kept, 0);
         assert_same_state(a.b, &x, &before);
     }
+    nevh_stepper_free(m);
+    put_away(&a.in);
+}
+
+/* What a run of nevh_orbit calls: the states of its samples. */
+typedef struct {
+    const timed *a;
+    double t[TIMES];
+    state x[TIMES];
+    size_t count, stop_at;
+} samples;
+
+static int take_sample(void *data, size_t i, double t, const double q[],
+                       const double p[]) {
+    samples *s = data;
+    ck_assert_uint_lt(i, TIMES);
+    s->t[i] = t;
+    for (size_t k = 0; k < s->a->b->n; k++) {
+        s->x[i].q[k] = q[k];
+        s->x[i].p[k] = p[k];
+    }
+    s->count++;
+    return i + 1 == s->stop_at;
+}
+
+/* Saves the run after some steps, and ends it. */
+typedef struct {
+    nevh_stepper *stepper;
+    size_t at, step, samples;
+    const samples *taken;
+    double t;
+    state x;
+    size_t n;
+    void *memory;
+} saver;
+
+static int save(void *data, size_t step, double t, const double q[],
+                const double p[]) {
+    saver *s = data;
+    if (step != s->at)
+        return 0;
+    s->step = step;
+    s->samples = s->taken->count;
+    s->t = t;
+    for (size_t k = 0; k < s->n; k++) {
+        s->x.q[k] = q[k];
+        s->x.p[k] = p[k];
+    }
+    nevh_stepper_save(s->stepper, s->memory);
+    return 1;
+}
+
+static int do_nothing(void *data, size_t step, double t, const double q[],
+                      const double p[]) {
+    (void)data, (void)step, (void)t, (void)q, (void)p;
+    return 0;
+}
+
+static nevh_orbit orbit_of(const timed *a, samples *s) {
+    return (nevh_orbit){.t0 = a->b->t0,
+                        .h = a->h,
+                        .t_end = a->t_end,
+                        .times = a->times,
+                        .n_times = TIMES,
+                        .sample = take_sample,
+                        .sample_data = s};
+}
+
+/* A run that an observer saves and ends is continued by another stepper: all
+   samples and the end are those of a run without a break. */
+TEST_EACH(saved_runs_continue, 2 * (scheme_count() + 1)) {
+    timed a = prepare_times(_i);
+    nevh_stepper *m = stepper_for(&a.in), *other = stepper_for(&a.in);
+    samples whole = {.a = &a}, parts = whole;
+    state x = start(a.b), y = x;
+    nevh_orbit one = orbit_of(&a, &whole), two = orbit_of(&a, &parts);
+    ck_assert_int_eq(nevh_orbit_run(m, &one, x.q, x.p), NEVH_OK);
+    saver s = {.stepper = other,
+               .at = 2,
+               .taken = &parts,
+               .n = a.b->n,
+               .memory = malloc(nevh_stepper_save_size(other))};
+    nevh_observer observer = {save, &s, 1};
+    two.observers = &observer;
+    two.n_observers = 1;
+    ck_assert_int_eq(nevh_orbit_run(other, &two, y.q, y.p), NEVH_STOPPED);
+    ck_assert_uint_eq(s.step, 2);
+    nevh_stepper_free(other);
+    other = stepper_for(&a.in);
+    ck_assert_int_eq(
+        nevh_stepper_load(other, s.memory, nevh_stepper_save_size(other)),
+        NEVH_OK);
+    two.n_observers = 0;
+    two.steps_before = s.step;
+    two.samples_before = s.samples;
+    two.t_before = s.t;
+    ck_assert_int_eq(nevh_orbit_run(other, &two, s.x.q, s.x.p), NEVH_OK);
+    ck_assert_uint_eq(nevh_stepper_taken(other), nevh_stepper_taken(m));
+    assert_same_state(a.b, &x, &s.x);
+    for (size_t i = 0; i < TIMES; i++) {
+        ck_assert(whole.t[i] == a.times[i] && parts.t[i] == a.times[i]);
+        assert_same_state(a.b, &whole.x[i], &parts.x[i]);
+    }
+    free(s.memory);
+    nevh_stepper_free(m);
+    nevh_stepper_free(other);
+    put_away(&a.in);
+}
+
+/* Long runs with few samples, which take steps in batches. */
+TEST_EACH(samples_at_equal_distances, 2 * (scheme_count() + 1)) {
+    timed a = prepare_times(_i);
+    enum { SPAN = 40 };
+    double h = a.h, t0 = a.b->t0, t_end = t0 + SPAN * 0.99 * h;
+    nevh_stepper *m = stepper_for(&a.in), *n = stepper_for(&a.in);
+    samples s = {.a = &a};
+    double times[3] = {t0, t0 + (t_end - t0) * 0.5, t_end};
+    double states[2 * MOST_DOF * 3];
+    state x = start(a.b), y = x;
+    nevh_orbit o = {.t0 = t0,
+                    .h = h,
+                    .t_end = t_end,
+                    .n_times = 3,
+                    .sample = take_sample,
+                    .sample_data = &s};
+    int status = nevh_orbit_run(m, &o, x.q, x.p);
+    nevh_observer each = {do_nothing, NULL, 1};
+    ck_assert_int_eq(nevh_run_at(n, t0, h, t_end, times, 3, states, NULL, y.q,
+                                 y.p, &each, 1),
+                     status);
+    assert_same_state(a.b, &x, &y);
+    ck_assert(status || s.count == 3);
+    for (size_t i = 0; i < s.count; i++)
+        for (size_t k = 0; k < a.b->n; k++) {
+            ck_assert(s.t[i] == times[i]);
+            ck_assert(s.x[i].q[k] == states[k * 3 + i]);
+            ck_assert(s.x[i].p[k] == states[(a.b->n + k) * 3 + i]);
+        }
+    nevh_stepper_free(m);
+    nevh_stepper_free(n);
+    put_away(&a.in);
+}
+
+TEST(a_sample_ends_a_run) {
+    timed a = prepare_times(2 * 2);
+    nevh_stepper *m = stepper_for(&a.in);
+    samples s = {.a = &a, .stop_at = 5};
+    state x = start(a.b);
+    nevh_orbit o = orbit_of(&a, &s);
+    ck_assert_int_eq(nevh_orbit_run(m, &o, x.q, x.p), NEVH_STOPPED);
+    ck_assert_uint_eq(s.count, 5);
+    ck_assert_uint_eq(nevh_stepper_taken(m), 2);
+    ck_assert(
+        strstr(nevh_stepper_message(m), "sample 4 stopped the run at t = "));
+    o.n_times = 1;
+    o.times = NULL;
+    ck_assert_int_eq(nevh_orbit_run(m, &o, x.q, x.p), NEVH_EINVAL);
     nevh_stepper_free(m);
     put_away(&a.in);
 }

@@ -20,6 +20,7 @@
 #include <stdlib.h>
 #include <time.h>
 #include <unistd.h>
+#include <nevh/run.h>
 
 enum { PAGE = 4096 };
 
@@ -35,16 +36,36 @@ static void interrupt(void) {
     raise((int)asked("INTERRUPT_SIGNAL"));
 }
 
-int nevh_stepper_apply(void *stepper, double t, double h, double q[],
-                       double p[]) {
-    static int (*real)(void *, double, double, double *, double *);
+static int count_steps(void *data, size_t step, double t, const double q[],
+                       const double p[]) {
     static long steps;
-    if (!real)
-        real = (int (*)(void *, double, double, double *, double *))dlsym(
-            RTLD_NEXT, "nevh_stepper_apply");
+    (void)data, (void)step, (void)t, (void)q, (void)p;
     if (++steps == asked("INTERRUPT_STEP"))
         interrupt();
-    return real(stepper, t, h, q, p);
+    return 0;
+}
+
+/* With an observer of each step before the others. */
+int nevh_orbit_run(nevh_stepper *s, const nevh_orbit *o, double q[],
+                   double p[]) {
+    static int (*real)(nevh_stepper *, const nevh_orbit *, double *, double *);
+    if (!real)
+        real = (int (*)(nevh_stepper *, const nevh_orbit *, double *,
+                        double *))dlsym(RTLD_NEXT, "nevh_orbit_run");
+    nevh_orbit watched = *o;
+    nevh_observer *all = malloc((o->n_observers + 1) * sizeof *all);
+    if (!all || !asked("INTERRUPT_STEP")) {
+        free(all);
+        return real(s, o, q, p);
+    }
+    all[0] = (nevh_observer){count_steps, NULL, 1};
+    for (size_t i = 0; i < o->n_observers; i++)
+        all[i + 1] = o->observers[i];
+    watched.observers = all;
+    watched.n_observers++;
+    int status = real(s, &watched, q, p);
+    free(all);
+    return status;
 }
 
 /* As Linux cuts a write short in a process that is killed: between pages. */

@@ -33,7 +33,7 @@ can_stop() {
     why='there is no C compiler'
     command -v ${CC:-cc} >/dev/null 2>&1 || return
     why='tests/support/interrupt.c does not compile'
-    ${CC:-cc} -shared -fPIC -o $work/interrupt.so \
+    ${CC:-cc} -shared -fPIC -I"$srcdir/include" -o $work/interrupt.so \
         "$srcdir/tests/support/interrupt.c" -ldl 2>$work/err || return
     why='nevh does not call a shared libnevh'
     stop $TERM INTERRUPT_STEP=2 run pendulum -o $work/trial.csv

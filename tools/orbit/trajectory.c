@@ -1,8 +1,4 @@
 /* nevh: an orbit, and its rows.
-
-   The steps of the main orbit are those of nevh_run_until.  A state between
-   two of them is reached by a second stepper that takes over the memory of the
-   first, so that no row changes the orbit.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "trajectory.h"
 #include "experiment/conserved.h"
@@ -14,40 +10,35 @@
 #include <time.h>
 #include <unistd.h>
 
-static const double whole_steps = 1e-9;    /* as nevh_run_until */
 static const double between_saves = 0.25;  /* seconds */
 static const double share_of_saves = 0.05; /* of the time, at most */
+
+enum { MOST_OBSERVERS = 2 };
+
+/* Work between steps, a few times a second. */
+typedef struct {
+    double next, last; /* times of saves, of looks at the clock */
+    size_t every;      /* steps between looks */
+    const trajectory_watch *watch;
+    bool shown;
+} clockwork;
 
 struct trajectory {
     const plan *plan;
     const char *integrator;
-    nevh_stepper *stepper, *branch;
+    nevh_stepper *stepper;
     row_times rows;
     sink to;
-    bool own_time, whole, finished;
-    double h;
-    uint64_t last; /* step of the main orbit, where times are not its own */
-    run_state now;
-    double kept_t, *kept_q, *kept_p; /* before the last step, with now.memory */
-    double *q, *p;                   /* at the end of a branch */
+    bool own_time, stops, finished;
+    run_state now; /* q, p: of the run under way */
     double *observed, *more;
     size_t observables;
     double energy, changed; /* of the first row; by how much others differ */
+    nevh_observer observer[MOST_OBSERVERS];
+    size_t observers;
+    clockwork clock;
+    int status;
 };
-
-/* As nevh_run_until cuts the span. */
-static void choose_steps(trajectory *r) {
-    double span = r->plan->t_end - r->plan->run->t_start,
-           steps = round(span / r->h);
-    r->own_time =
-        nevh_integrator_own_time(plan_scheme(r->integrator, &(bool){false})) ||
-        plan_transform(r->plan, r->integrator);
-    r->whole = !r->own_time && steps > 0 &&
-               fabs(span / r->h - steps) <= whole_steps * steps;
-    r->last = (uint64_t)(r->whole ? steps : floor(span / r->h));
-    if (r->whole)
-        r->h = span / steps;
-}
 
 static void reserve(trajectory *r) {
     size_t n = r->plan->n;
@@ -57,10 +48,6 @@ static void reserve(trajectory *r) {
     s->memory = tool_allocate(s->memory_size, 1);
     s->q = tool_allocate(n, sizeof *s->q);
     s->p = tool_allocate(n, sizeof *s->p);
-    r->kept_q = tool_allocate(n, sizeof *r->kept_q);
-    r->kept_p = tool_allocate(n, sizeof *r->kept_p);
-    r->q = tool_allocate(n, sizeof *r->q);
-    r->p = tool_allocate(n, sizeof *r->p);
     r->observables = nevh_scene_shown_count(r->plan->scene, NEVH_OBSERVABLES);
     r->observed = tool_allocate(r->observables, sizeof *r->observed);
     r->more = tool_allocate(r->to.more ? r->to.more->titles.count : 0,
@@ -76,26 +63,22 @@ trajectory *trajectory_new(const plan *p, const char *integrator,
     *r = (trajectory){.plan = p,
                       .integrator = integrator,
                       .stepper = stepper,
-                      .branch = nevh_stepper_copy(stepper),
                       .rows = *rows,
                       .to = to,
-                      .h = p->dt[0],
                       .energy = NAN,
                       .now.at = {.t = p->run->t_start, .written = NAN}};
+    r->own_time =
+        nevh_integrator_own_time(plan_scheme(integrator, &(bool){false})) ||
+        plan_transform(p, integrator);
+    r->stops = nevh_scene_stops(p->scene);
     reserve(r);
-    choose_steps(r);
     return r;
 }
 
 void trajectory_free(trajectory *r) {
-    nevh_stepper_free(r->branch);
     free(r->now.memory);
     free(r->now.q);
     free(r->now.p);
-    free(r->kept_q);
-    free(r->kept_p);
-    free(r->q);
-    free(r->p);
     free(r->observed);
     free(r->more);
     free(r);
@@ -160,7 +143,7 @@ static int show(trajectory *r, double t, const double q[], const double p[]) {
         return r->to.take(r->to.data, t, q, p);
     if (nevh_scene_shown_values(scene, NEVH_OBSERVABLES, t, q, p, r->observed))
         return fprintf(stderr, "%s\n", nevh_scene_message(scene)), TOOL_USAGE;
-    if (nevh_field_value(nevh_stepper_field(r->branch), 1, &t, q, p, &energy))
+    if (nevh_field_value(nevh_stepper_field(r->stepper), 1, &t, q, p, &energy))
         energy = NAN;
     r->energy = isnan(r->energy) ? energy : r->energy;
     r->changed = fmax(r->changed, fabs(energy - r->energy));
@@ -247,121 +230,101 @@ static double time_of_row(const trajectory *r, uint64_t i) {
                        : t0 + (t_end - t0) * ((double)i / (double)others);
 }
 
-/* Of the next row, as far as it does not depend on steps. */
-static double next_row(const trajectory *r) {
-    return r->rows.by == BY_STEPS ? r->plan->t_end
-                                  : time_of_row(r, r->now.at.row);
-}
-
 /* Times that only rounding makes different.  Nothing is close to infinity. */
 static bool same(const trajectory *r, double a, double b) {
-    return a == b || fabs(a - b) < 8 * DBL_EPSILON * (fabs(a) + fabs(b) + r->h);
+    double h = fabs(r->plan->dt[0]);
+    return a == b || fabs(a - b) < 8 * DBL_EPSILON * (fabs(a) + fabs(b) + h);
 }
 
 static bool is_before(const trajectory *r, double a, double b) {
     return a < b && !same(r, a, b);
 }
 
-static double time_of_step(const trajectory *r, uint64_t step) {
-    if (r->whole && step == r->last)
-        return r->plan->t_end;
-    return r->plan->run->t_start + (double)step * r->h;
+/* Observers and samples return whether the run is to end. */
+
+static bool show_row(trajectory *r, double t, const double q[],
+                     const double p[]) {
+    r->status = show(r, t, q, p);
+    return r->status || r->finished;
 }
 
-static void count_row(trajectory *r) {
-    if (r->rows.by == BY_STEPS)
-        r->now.at.row = r->now.at.step + r->rows.every;
-    else
-        r->finished = ++r->now.at.row == r->rows.count;
+static int take_step(void *data, size_t step, double t, const double q[],
+                     const double p[]) {
+    trajectory *r = data;
+    if (step < r->now.at.row && t != r->plan->t_end)
+        return false;
+    r->now.at.row = step + r->rows.every;
+    return show_row(r, t, q, p);
 }
 
-/* The rows of the present state. */
-static int show_here(trajectory *r) {
-    const progress_of_run *at = &r->now.at;
-    if (r->rows.by == BY_STEPS) {
-        r->finished = same(r, at->t, r->plan->t_end);
-        if (at->step < at->row && !r->finished)
-            return TOOL_OK;
-        count_row(r);
-        return show(r, at->t, r->now.q, r->now.p);
-    }
-    int status = TOOL_OK;
-    while (!status && !r->finished && same(r, next_row(r), at->t)) {
-        double t = next_row(r);
-        count_row(r);
-        status = show(r, t, r->now.q, r->now.p);
-    }
-    return status;
-}
-
-static int branch_to(trajectory *r, double t) {
-    size_t size = r->plan->n * sizeof *r->q;
-    memcpy(r->q, r->kept_q, size);
-    memcpy(r->p, r->kept_p, size);
-    if (nevh_stepper_load(r->branch, r->now.memory, r->now.memory_size) ||
-        nevh_run_until(r->branch, r->kept_t, r->h, t, r->q, r->p, NULL, 0))
-        return failed(r, r->kept_t, nevh_stepper_message(r->branch));
-    return show(r, t, r->q, r->p);
-}
-
-/* The rows from the state that was kept on, before that time. */
-static int show_before(trajectory *r, double limit) {
-    int status = TOOL_OK;
-    while (!status && !r->finished && is_before(r, next_row(r), limit)) {
-        status = branch_to(r, next_row(r));
-        if (r->rows.by == BY_STEPS)
-            r->finished = true;
-        else
-            count_row(r);
-    }
-    return status;
-}
-
-/* Steps. */
-
-static int advance(trajectory *r) {
-    progress_of_run *at = &r->now.at;
-    double before = at->t;
-    if (nevh_stepper_apply(r->stepper, at->t, r->h, r->now.q, r->now.p))
-        return failed(r, before, nevh_stepper_message(r->stepper));
-    at->step++;
-    at->t =
-        r->own_time ? nevh_stepper_time(r->stepper) : time_of_step(r, at->step);
-    return at->t > before ? TOOL_OK
-                          : failed(r, before, "no time passes in a step");
-}
-
-static int step(trajectory *r) {
-    const progress_of_run *at = &r->now.at;
-    bool last = !r->own_time && at->step == r->last;
-    bool branches = last || r->own_time ||
-                    is_before(r, next_row(r), time_of_step(r, at->step + 1));
-    if (branches) {
-        r->kept_t = at->t;
-        memcpy(r->kept_q, r->now.q, r->plan->n * sizeof *r->q);
-        memcpy(r->kept_p, r->now.p, r->plan->n * sizeof *r->p);
-        nevh_stepper_save(r->stepper, r->now.memory);
-    }
-    int status = last ? TOOL_OK : advance(r);
-    if (status || !branches)
-        return status;
-    return show_before(r, last ? INFINITY : at->t);
+static int take_sample(void *data, size_t i, double t, const double q[],
+                       const double p[]) {
+    trajectory *r = data;
+    r->now.at.row = i + 1;
+    r->finished = i + 1 == r->rows.count;
+    return show_row(r, t, q, p);
 }
 
 /* Ends a run at the state that the scene wants it to stop at. */
-static int check_stop(trajectory *r) {
+static int check_stop(trajectory *r, double t, const double q[],
+                      const double p[]) {
     bool reached;
     nevh_scene *scene = r->plan->scene;
-    const progress_of_run *at = &r->now.at;
-    if (nevh_scene_stop_reached(scene, at->t, r->now.q, r->now.p, &reached))
+    if (nevh_scene_stop_reached(scene, t, q, p, &reached))
         return fprintf(stderr, "%s\n", nevh_scene_message(scene)), TOOL_USAGE;
     if (!reached)
         return TOOL_OK;
     r->finished = true;
-    int status =
-        at->written == at->t ? TOOL_OK : show(r, at->t, r->now.q, r->now.p);
-    remark(r, "stopped at t = %.9g: %s", at->t, nevh_scene_stop_text(scene));
+    int status = r->now.at.written == t ? TOOL_OK : show(r, t, q, p);
+    remark(r, "stopped at t = %.9g: %s", t, nevh_scene_stop_text(scene));
     return status;
+}
+
+static double seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Twice or half as many steps between looks at the clock. */
+static void pace(clockwork *c, double now) {
+    static const double brief = 1e-4, long_ago = 1e-3; /* seconds */
+    static const size_t most = 1 << 20;
+    if (now - c->last < brief && c->every < most)
+        c->every *= 2;
+    else if (now - c->last > long_ago && c->every > 1)
+        c->every /= 2;
+    c->last = now;
+}
+
+static int tick(trajectory *r) {
+    clockwork *c = &r->clock;
+    const trajectory_watch *w = c->watch;
+    double now = seconds();
+    pace(c, now);
+    if (now < c->next)
+        return TOOL_OK;
+    int status = w->save ? w->save(w->data) : TOOL_OK;
+    double took = seconds() - now;
+    c->next = now + took + fmax(between_saves, took / share_of_saves);
+    c->shown = w->progress;
+    if (c->shown)
+        fprintf(stderr, "\r\033[Kt = %.6g of %g", r->now.at.t, r->plan->t_end);
+    return status;
+}
+
+/* What is done between steps: last of the observers. */
+static int attend(void *data, size_t step, double t, const double q[],
+                  const double p[]) {
+    trajectory *r = data;
+    r->now.at.step = step;
+    r->now.at.t = t;
+    if (r->stops)
+        r->status = check_stop(r, t, q, p);
+    if (!r->status && !r->finished)
+        r->status = tick(r);
+    r->observer[r->observers - 1].every = r->stops ? 1 : r->clock.every;
+    return r->status || r->finished || *r->clock.watch->signal;
 }
 
 /* What is saved. */
@@ -372,10 +335,12 @@ run_state *trajectory_state(trajectory *r) {
 }
 
 static bool step_is_possible(const trajectory *r, const progress_of_run *at) {
+    static const double adjusted = 2e-9; /* of the span, by which steps are */
     double t0 = r->plan->run->t_start, t_end = r->plan->t_end;
-    if (!r->own_time)
-        return at->step <= r->last && same(r, at->t, time_of_step(r, at->step));
-    return (at->t >= t0 && at->t <= t_end) || same(r, at->t, t_end);
+    double due = t0 + (double)at->step * r->plan->dt[0];
+    bool within = (at->t >= t0 && at->t <= t_end) || same(r, at->t, t_end);
+    return within && (r->own_time || same(r, at->t, due) ||
+                      fabs(at->t - due) <= adjusted * fabs(t_end - t0));
 }
 
 /* The next row is not before the state, the last one not after it. */
@@ -404,51 +369,52 @@ bool trajectory_finished(const trajectory *r) {
     return r->finished;
 }
 
-/* Work between steps, a few times a second. */
-typedef struct {
-    double next;
-    const trajectory_watch *watch;
-    bool shown;
-} clockwork;
-
-static double seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static int tick(const trajectory *r, clockwork *c) {
-    const trajectory_watch *w = c->watch;
-    double now = seconds();
-    if (now < c->next)
-        return TOOL_OK;
-    int status = w->save ? w->save(w->data) : TOOL_OK;
-    double took = seconds() - now;
-    c->next = now + took + fmax(between_saves, took / share_of_saves);
-    c->shown = w->progress;
-    if (c->shown)
-        fprintf(stderr, "\r\033[Kt = %.6g of %g", r->now.at.t, r->plan->t_end);
+/* Runs from the state that there is. */
+static int run(trajectory *r) {
+    const plan *p = r->plan;
+    progress_of_run *at = &r->now.at;
+    bool by_steps = r->rows.by == BY_STEPS;
+    r->observers = 0;
+    if (by_steps)
+        r->observer[r->observers++] =
+            (nevh_observer){take_step, r, r->rows.every};
+    r->observer[r->observers++] = (nevh_observer){attend, r, 1};
+    nevh_orbit orbit = {
+        .t0 = p->run->t_start,
+        .h = p->dt[0],
+        .t_end = p->t_end,
+        .observers = r->observer,
+        .n_observers = r->observers,
+        .times = r->rows.by == BY_TIMES ? r->rows.time : NULL,
+        .n_times = by_steps ? 0 : r->rows.count,
+        .sample = take_sample,
+        .sample_data = r,
+        .steps_before = at->step,
+        .samples_before = by_steps ? 0 : at->row,
+        .t_before = at->t,
+    };
+    int status = nevh_orbit_run(r->stepper, &orbit, r->now.q, r->now.p);
+    if (status && nevh_stepper_taken(r->stepper) > at->step)
+        at->t = nevh_stepper_time(r->stepper);
+    at->step = nevh_stepper_taken(r->stepper);
     return status;
 }
 
 int trajectory_follow(trajectory *r, const trajectory_watch *watch) {
-    clockwork c = {seconds() + between_saves, watch, false};
-    int status = TOOL_OK;
-    while (!status) {
-        status = show_here(r);
-        if (!status && !r->finished)
-            status = check_stop(r);
-        if (!status && !r->finished)
-            status = tick(r, &c);
-        if (status || r->finished || *watch->signal)
-            break;
-        status = step(r);
-        if (r->finished)
-            break;
-    }
-    if (c.shown)
+    double begin = seconds();
+    double last = fmax(fabs(r->plan->run->t_start), fabs(r->plan->t_end));
+    r->clock = (clockwork){begin + between_saves, begin, 1, watch, false};
+    if (!r->own_time && last + r->plan->dt[0] == last)
+        return failed(r, r->now.at.t, "no time passes in a step");
+    int status = run(r);
+    if (r->clock.shown)
         fputs("\r\033[K", stderr);
-    if (!status && r->finished)
+    if (r->status)
+        return r->status;
+    if (status && status != NEVH_STOPPED)
+        return failed(r, r->now.at.t, nevh_stepper_message(r->stepper));
+    r->finished |= !status;
+    if (r->finished)
         doubt(r);
-    return status;
+    return TOOL_OK;
 }
