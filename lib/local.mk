@@ -254,9 +254,17 @@ libnevh_core_la_SOURCES = \
 	lib/ensemble/lanes.c \
 	lib/ensemble/own.c \
 	lib/ensemble/observe.c \
-	lib/ensemble/cross.c \
-	lib/ensemble/event.c \
-	lib/ensemble/chaotic.c \
+	lib/ensemble/outcomes/outcome_private.h \
+	lib/ensemble/outcomes/outcomes.c \
+	lib/ensemble/outcomes/state.c \
+	lib/ensemble/outcomes/energy_error.c \
+	lib/ensemble/outcomes/first.c \
+	lib/ensemble/outcomes/last.c \
+	lib/ensemble/outcomes/extremes.c \
+	lib/ensemble/outcomes/mean.c \
+	lib/ensemble/outcomes/crossings.c \
+	lib/ensemble/outcomes/frequency.c \
+	lib/ensemble/outcomes/chaotic.c \
 	lib/scene/scene_private.h \
 	lib/scene/equation.c \
 	lib/scene/lines.c \

@@ -170,6 +170,8 @@ static int help(size_t i) {
     help_print(stdout, 0, 0, known[i].help);
     print_examples(known[i].examples);
     options_help(stdout, known[i].bit);
+    if (known[i].bit == FOR_SWEEP)
+        outcomes_help(stdout);
     return TOOL_OK;
 }
 

@@ -35,7 +35,8 @@ typedef struct {
     bool velocities;  /* `value` reads v */
 } nevh_quantity;
 
-/* What is kept of an orbit. */
+/* What is kept of an orbit: kinds of outcomes, which nevh_outcomes lists.  Later
+   ones have no constant here: nevh_outcome_find finds them by name. */
 typedef enum {
     NEVH_OUTCOME_STATE,        /* coordinates and momenta at the end: 2n */
     NEVH_OUTCOME_TIME,         /* reached */
@@ -59,10 +60,39 @@ typedef enum {
     NEVH_OUTCOME_MEGNO     /* and MEGNO */
 } nevh_outcome_kind;
 
+typedef enum {
+    NEVH_OUTCOME_TAKES_NOTHING,
+    NEVH_OUTCOME_TAKES_FORMULA,   /* NAME(F), the quantity */
+    NEVH_OUTCOME_TAKES_CONDITION, /* NAME(A > B), where the quantity, A - B, is
+                                     above 0 */
+    NEVH_OUTCOME_TAKES_SECTION    /* NAME or NAME(SECTION), where the quantity
+                                     goes through 0 */
+} nevh_outcome_takes;
+typedef enum {
+    NEVH_UNIT_NONE,
+    NEVH_UNIT_OF_FORMULA,
+    NEVH_UNIT_TIME,
+    NEVH_UNIT_FREQUENCY, /* angle over time */
+    NEVH_UNIT_RATE       /* 1 over time */
+} nevh_outcome_unit;
+/* A kind of outcome. */
 typedef struct {
-    nevh_outcome_kind kind;
-    nevh_quantity quantity; /* of FIRST to FREQUENCY */
-    int direction;          /* of CROSSINGS and PERIOD, as in nevh_section */
+    const char *name; /* in scenes, as "mean" */
+    nevh_outcome_takes takes;
+    nevh_outcome_unit unit; /* of its numbers */
+    const char *help;       /* what it is, in a line */
+} nevh_outcome_info;
+/* All kinds, element k that of kind k; NULL ends the list. */
+NEVH_API const nevh_outcome_info *const *nevh_outcomes(void);
+/* The kind of a name; -1 where there is none, or for NULL. */
+NEVH_API int nevh_outcome_find(const char *name);
+
+typedef struct {
+    int kind;               /* a nevh_outcome_kind, or another number of
+                               nevh_outcomes */
+    nevh_quantity quantity; /* of kinds that take anything */
+    int direction;          /* of kinds that take a section, as in
+                               nevh_section */
     double modulus;         /* likewise: multiples of it count, too; 0: none; of
                                FREQUENCY: the period of an angle, whose cosine
                                is taken where it goes round */

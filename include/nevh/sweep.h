@@ -75,7 +75,7 @@ NEVH_API size_t nevh_sweep_varied(const nevh_sweep *);
 NEVH_API const char *nevh_sweep_column(const nevh_sweep *, size_t k);
 /* Whether column k is a nevh_verdict. */
 NEVH_API bool nevh_sweep_is_verdict(const nevh_sweep *, size_t k);
-/* Whether column k is last, min, max or mean of a quantity: of a member that is
+/* Whether column k is a value of a quantity, such as its mean: of a member that is
    done it is NAN only where the quantity is undefined at some time.  Others may
    have no value for other reasons, as the time of what never happens. */
 NEVH_API bool nevh_sweep_is_of_values(const nevh_sweep *, size_t k);

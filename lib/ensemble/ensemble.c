@@ -6,26 +6,24 @@
 #include <string.h>
 
 enum { WIDTH = 32, MOST_NUMBERS = 1 << 14 }; /* chosen; n times width */
-enum { MOST_SAMPLES = 1 << 12 };             /* of an orbit */
 
 static int out_of_memory(nevh_ensemble *e) {
     return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
 }
 
-static bool has_quantity(const nevh_outcome *o) {
-    return o->kind >= NEVH_OUTCOME_FIRST && o->kind <= NEVH_OUTCOME_FREQUENCY;
+/* What an outcome asks for. */
+static void take_outcome(nevh_ensemble *e, size_t i) {
+    const nevh__outcome_type *type = e->outcomes[i].type;
+    bool crosses = type->info.takes == NEVH_OUTCOME_TAKES_SECTION;
+    e->columns += type->whole_state ? 2 * e->n : 1;
+    e->moving |= type->info.takes && e->outcomes[i].decl.quantity.velocities;
+    e->looks_back |= type->branches;
+    e->has_energy |= type->of_energy;
+    e->watches |= type->step || type->of_energy || type->of_chaos || crosses;
+    if (crosses)
+        e->crossing_of[e->n_crossings++] = i;
 }
 
-static bool crosses(const nevh_outcome *o) {
-    return o->kind == NEVH_OUTCOME_CROSSINGS || o->kind == NEVH_OUTCOME_PERIOD;
-}
-
-static bool asks_energy(const nevh_outcome *o) {
-    return o->kind == NEVH_OUTCOME_ENERGY_ERROR ||
-           o->kind == NEVH_OUTCOME_VERDICT;
-}
-
-/* What the outcomes ask for. */
 static int take_outcomes(nevh_ensemble *e) {
     e->n_outcomes = e->is.n_outcomes;
     e->outcomes = nevh__array(e->n_outcomes, sizeof *e->outcomes);
@@ -37,30 +35,16 @@ static int take_outcomes(nevh_ensemble *e) {
     e->moving = e->is.stop.value && e->is.stop.velocities;
     for (size_t i = 0; i < e->n_outcomes; i++) {
         const nevh_outcome *o = &e->is.outcomes[i];
-        e->outcomes[i] = *o;
-        if ((unsigned)o->kind > NEVH_OUTCOME_MEGNO ||
-            (has_quantity(o) && !o->quantity.value))
+        const nevh__outcome_type *type = nevh__outcome_type_of(o->kind);
+        if (!type || (type->info.takes && !o->quantity.value))
             return nevh__fail(&e->report, NEVH_EINVAL,
                               "outcome %zu is of no known kind, or lacks its "
                               "quantity",
                               i);
-        e->columns += o->kind == NEVH_OUTCOME_STATE ? 2 * e->n : 1;
-        e->moving |= has_quantity(o) && o->quantity.velocities;
-        e->looks_back |= o->kind == NEVH_OUTCOME_FIRST || crosses(o);
-        e->watches |= o->kind != NEVH_OUTCOME_STATE &&
-                      o->kind != NEVH_OUTCOME_TIME &&
-                      o->kind != NEVH_OUTCOME_LAST;
-        if (crosses(o))
-            e->crossing_of[e->n_crossings++] = i;
+        e->outcomes[i] = (nevh__outcome_entry){.decl = *o, .type = type};
+        take_outcome(e, i);
     }
     return NEVH_OK;
-}
-
-static bool has_energy(const nevh_ensemble *e) {
-    for (size_t i = 0; i < e->n_outcomes; i++)
-        if (asks_energy(&e->outcomes[i]))
-            return true;
-    return false;
 }
 
 /* How many side by side. */
@@ -161,7 +145,9 @@ static void lay_out(nevh__arena *a, void *ensemble) {
     size_t n = e->n, width = e->width, stride = e->stride;
     bool copies = stride != width;
     e->lanes = nevh__arena_take(a, width, sizeof *e->lanes);
-    e->records = nevh__arena_take(a, e->n_outcomes * width, sizeof *e->records);
+    for (size_t i = 0; i < e->n_outcomes; i++)
+        e->outcomes[i].records =
+            nevh__arena_take(a, width * e->outcomes[i].type->size, 1);
     e->on = nevh__arena_take(a, width, sizeof *e->on);
     e->step = nevh__arena_take(a, width, sizeof *e->step);
     e->q = numbers(a, n * width);
@@ -199,63 +185,12 @@ static int plan_rooms(nevh_ensemble *e) {
     return e->memory && plan_root(e) ? NEVH_OK : out_of_memory(e);
 }
 
-/* Room for samples of each lane, where frequencies are asked for. */
-static int plan_samples(nevh_ensemble *e, const nevh_options *o) {
-    for (size_t i = 0; i < e->n_outcomes; i++) {
-        if (e->outcomes[i].kind != NEVH_OUTCOME_FREQUENCY)
-            continue;
-        if (e->is.integrator->own_time || o->transform)
-            return nevh__fail(&e->report, NEVH_EINVAL,
-                              "frequency: it needs samples at equal times, and "
-                              "%s chooses times of its own: choose another "
-                              "integrator",
-                              e->is.integrator->name);
-        for (size_t lane = 0; lane < e->width; lane++)
-            if (!(e->records[i * e->width + lane].samples =
-                      nevh_spectral_samples_new(MOST_SAMPLES)))
-                return out_of_memory(e);
-    }
-    return NEVH_OK;
-}
-
-/* A section's value, at the state beside the orbits. */
-typedef struct {
-    nevh_ensemble *ensemble;
-    size_t outcome;
-} crossing;
-
-static int value_of_crossing(void *data, double t, const double q[],
-                             const double p[], double *value) {
-    const crossing *c = data;
-    nevh_ensemble *e = c->ensemble;
-    memcpy(e->q1, q, e->n * sizeof *q);
-    memcpy(e->p1, p, e->n * sizeof *p);
-    *value = nevh__narrow_value(e, c->outcome, t);
-    return NEVH_OK;
-}
-
-/* The crossings are freed with the ensemble, as data of the first. */
-static int plan_sections(nevh_ensemble *e) {
-    crossing *data = nevh__array(e->n_crossings, sizeof *data);
-    if (!data)
-        return out_of_memory(e);
-    for (size_t i = 0; i < e->n_crossings; i++) {
-        const nevh_outcome *o = &e->outcomes[e->crossing_of[i]];
-        data[i] = (crossing){e, e->crossing_of[i]};
-        e->crossings[i] = (nevh_section){.value = value_of_crossing,
-                                         .data = &data[i],
-                                         .direction = o->direction,
-                                         .period = o->modulus};
-    }
-    e->sections =
-        nevh_sections_new(e->alone ? e->stepper : e->narrow, e->crossings,
-                          e->n_crossings, nevh__ensemble_cross, e);
-    if (!e->sections)
-        return out_of_memory(e);
-    if (nevh_sections_status(e->sections))
-        return nevh__fail_as(&e->report, &e->sections->report);
-    return e->alone || nevh__crossing_lanes_plan(e) ? NEVH_OK
-                                                    : out_of_memory(e);
+static int plan_outcomes(nevh_ensemble *e, const nevh_options *options) {
+    int status = NEVH_OK;
+    for (size_t i = 0; i < e->n_outcomes && !status; i++)
+        if (e->outcomes[i].type->plan)
+            status = e->outcomes[i].type->plan(e, i, options);
+    return status;
 }
 
 static int check_times(nevh_ensemble *e) {
@@ -286,7 +221,7 @@ static int plan(nevh_ensemble *e) {
     const nevh_system *system = e->system;
     bool autonomous = nevh_system_traits(system) & NEVH_AUTONOMOUS;
     o.balance =
-        has_energy(e) && (!autonomous || nevh_system_friction(e->system, NULL));
+        e->has_energy && (!autonomous || nevh_system_friction(e->system, NULL));
     e->width = choose_width(e, &o);
     e->stride = nevh__padded(e->width);
     e->alone = e->width == 1;
@@ -296,17 +231,18 @@ static int plan(nevh_ensemble *e) {
     if (!status)
         status = nevh__ensemble_stepper(e, system, &o, 1, &e->spare);
     e->narrow = e->spare;
-    if (!status && has_energy(e))
+    if (!status && e->has_energy)
         status = plan_energy(e, &o);
     if (!status && e->moving)
         status = plan_motion(e, &o);
     if (!status)
         status = plan_rooms(e);
     if (!status)
-        status = plan_samples(e, &o);
+        status = plan_outcomes(e, &o);
     if (!status && nevh__ensemble_tells_chaos(e))
         status = nevh__chaotic_plan(e, &o);
-    return !status && e->n_crossings ? plan_sections(e) : status;
+    return !status && e->n_crossings ? nevh__ensemble_plan_crossings(e)
+                                     : status;
 }
 
 nevh_ensemble *nevh_ensemble_new(const nevh_system *system,
@@ -330,21 +266,18 @@ void nevh_ensemble_free(nevh_ensemble *e) {
     if (!e)
         return;
     for (size_t i = 0; e->memory && i < e->n_outcomes * e->width; i++)
-        nevh_spectral_samples_free(e->records[i].samples);
+        if (e->outcomes[i / e->width].type->clear)
+            e->outcomes[i / e->width].type->clear(
+                nevh__record_of(e, i / e->width, i % e->width));
     nevh_energy_free(e->energy);
-    nevh_sections_free(e->sections);
     nevh__chaotic_free(e->chaotic);
-    nevh__crossing_lanes_free(e->crossing_lanes);
-    if (e->n_crossings && e->crossings)
-        free(e->crossings[0].data);
+    nevh__ensemble_free_crossings(e);
     nevh_field_free(e->motion);
     nevh_stepper_free(e->stepper);
     nevh_stepper_free(e->spare);
     if (e->root)
         gsl_root_fsolver_free(e->root);
     free(e->outcomes);
-    free(e->crossing_of);
-    free(e->crossings);
     free(e->memory);
     free(e);
 }

@@ -9,6 +9,7 @@
 #define NEVH_ENSEMBLE_PRIVATE_H
 
 #include "diagnose/energy_private.h"
+#include "ensemble/outcomes/outcome_private.h"
 #include "ensemble/own_private.h"
 #include "run/section_private.h"
 #include "run/stepper_private.h"
@@ -22,14 +23,12 @@ typedef struct {
     double *value;          /* n_outcomes rows of `stride` */
 } nevh__snapshot;
 
-/* An outcome of a lane on its way. */
+/* An outcome that is asked for. */
 typedef struct {
-    double value, roundoff;
-    double first, last; /* of crossings */
-    size_t count;
-    bool known;                     /* it will not change any more */
-    nevh_spectral_samples *samples; /* NULL: not asked for */
-} nevh__record;
+    nevh_outcome decl;
+    const nevh__outcome_type *type;
+    char *records; /* width, of the type's size */
+} nevh__outcome_entry;
 
 typedef struct {
     bool busy, fresh, over;
@@ -48,7 +47,7 @@ struct nevh_ensemble {
     const nevh_system *system;
     size_t n, width, stride; /* stride: of values, a multiple of NEVH__LANES */
     nevh_ensemble_options is;
-    nevh_outcome *outcomes; /* the ensemble's own */
+    nevh__outcome_entry *outcomes;
     size_t n_outcomes, columns;
     nevh_stepper *stepper;        /* of all lanes */
     nevh_stepper *spare, *narrow; /* of one: narrow is spare, or a lane's */
@@ -59,6 +58,7 @@ struct nevh_ensemble {
     bool looks_back, moving; /* snapshots, velocities are asked for */
     bool watches; /* each step; else ends are all that is asked for */
     bool planned;
+    bool has_energy;
     nevh_energy *energy;     /* NULL: not asked for */
     nevh_sections *sections; /* NULL: not asked for */
     nevh_section *crossings; /* one an outcome that wants it */
@@ -76,9 +76,8 @@ struct nevh_ensemble {
     double *run_memory;    /* of one lane, after a step */
     nevh__snapshot now;    /* of values alone, and times */
     nevh__snapshot ago1, ago2;
-    nevh__record *records; /* n_outcomes rows of `width` */
-    double *stop;          /* stride: values of what stops */
-    double *v;             /* n rows of `stride` */
+    double *stop; /* stride: values of what stops */
+    double *v;    /* n rows of `stride` */
     double *wide_q,
         *wide_p; /* n rows of `stride`; q, p themselves, or copies */
     /* A state beside the orbits: of the narrow stepper, padded for values. */
@@ -108,8 +107,8 @@ void nevh__ensemble_look(nevh_ensemble *);
 /* The lane ends, as it is: hands its outcomes on. */
 void nevh__ensemble_end(nevh_ensemble *, size_t lane);
 void nevh__ensemble_fail(nevh_ensemble *, size_t lane, const nevh__report *);
-/* A point of a section of e->crossing_lane. */
-int nevh__ensemble_cross(void *ensemble, const nevh_point *);
+/* What is kept of an outcome of a lane on its way. */
+void *nevh__record_of(const nevh_ensemble *, size_t outcome, size_t lane);
 /* Of states side by side, rows of `stride`: velocities, to e->v, where they are
    asked for; then quantities. */
 void nevh__ensemble_move(nevh_ensemble *, const double t[], const double q[],
@@ -117,12 +116,13 @@ void nevh__ensemble_move(nevh_ensemble *, const double t[], const double q[],
 void nevh__ensemble_value(const nevh_ensemble *, size_t o, const double t[],
                           const double q[], const double p[], double values[]);
 
-/* cross.c: crossings of lanes that are to be looked at and are not over. */
-bool nevh__crossing_lanes_plan(nevh_ensemble *); /* false: memory is out */
-void nevh__crossing_lanes_free(nevh__crossing_lanes *);
+/* outcomes/crossings.c: crossings of lanes that are to be looked at and are not
+   over. */
+int nevh__ensemble_plan_crossings(nevh_ensemble *);
+void nevh__ensemble_free_crossings(nevh_ensemble *);
 void nevh__ensemble_look_at_crossings(nevh_ensemble *);
 
-/* chaotic.c: outcomes that tell chaos. */
+/* outcomes/chaotic.c: outcomes that tell chaos. */
 bool nevh__ensemble_tells_chaos(const nevh_ensemble *);
 int nevh__chaotic_plan(nevh_ensemble *, const nevh_options *);
 void nevh__chaotic_free(nevh__chaotic *); /* NULL is allowed */
@@ -134,15 +134,6 @@ void nevh__chaotic_queue(nevh_ensemble *, size_t lane);
 void nevh__chaotic_finish(nevh_ensemble *);
 /* All orbits, where no other outcome is asked for; else returns false. */
 bool nevh__chaotic_run(nevh_ensemble *);
-
-/* event.c: the time at which outcome o of a lane first is above 0 between the
-   snapshot and `until`, a part of the step from it, where it is above 0. */
-double nevh__ensemble_locate(nevh_ensemble *, const nevh__snapshot *from,
-                             size_t lane, size_t o, double until,
-                             double value_until);
-/* The time at which it first is between the last three states, none of which
-   is above 0; NAN where it is not, as far as parabolas tell. */
-double nevh__ensemble_graze(nevh_ensemble *, size_t lane, size_t o);
 
 /* lanes.c: moves of columns. */
 void nevh__lane_to_narrow(nevh_ensemble *, const double q[], const double p[],

@@ -4,9 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-enum { LINES = 3 }; /* of a spectrum, of which the largest is told */
-
 /* Rows of `width`, in rows of `stride` that repeat the first lane. */
 static void widen(const nevh_ensemble *e, const double from[], double to[]) {
     if (from == to)
@@ -41,7 +38,7 @@ void nevh__ensemble_move(nevh_ensemble *e, const double t[], const double q[],
 
 void nevh__ensemble_value(const nevh_ensemble *e, size_t o, const double t[],
                           const double q[], const double p[], double values[]) {
-    const nevh_quantity *is = &e->outcomes[o].quantity;
+    const nevh_quantity *is = &e->outcomes[o].decl.quantity;
     is->value(is->data, e->stride, t, q, p, is->velocities ? e->v : NULL,
               values);
 }
@@ -53,7 +50,7 @@ static void evaluate(nevh_ensemble *e) {
     widen(e, e->p, e->wide_p);
     nevh__ensemble_move(e, e->now.t, e->wide_q, e->wide_p);
     for (size_t i = 0; i < e->n_outcomes; i++)
-        if (e->outcomes[i].quantity.value)
+        if (e->outcomes[i].decl.quantity.value)
             nevh__ensemble_value(e, i, e->now.t, e->wide_q, e->wide_p,
                                  e->now.value + i * e->stride);
     const nevh_quantity *stop = &e->is.stop;
@@ -63,7 +60,7 @@ static void evaluate(nevh_ensemble *e) {
 }
 
 double nevh__narrow_value(nevh_ensemble *e, size_t o, double t) {
-    const nevh_quantity *is = &e->outcomes[o].quantity;
+    const nevh_quantity *is = &e->outcomes[o].decl.quantity;
     for (size_t lane = 0; lane < NEVH__LANES; lane++)
         e->t1[lane] = t;
     for (size_t i = 0; i < e->n * NEVH__LANES; i++) {
@@ -79,80 +76,50 @@ double nevh__narrow_value(nevh_ensemble *e, size_t o, double t) {
     return e->value1[0];
 }
 
-/* sum + roundoff += x */
-static void add(nevh__record *r, double x) {
-    double next = r->value + x;
-    r->roundoff += nevh__roundoff(next, r->value, x);
-    r->value = next;
+void *nevh__record_of(const nevh_ensemble *e, size_t o, size_t lane) {
+    const nevh__outcome_entry *entry = &e->outcomes[o];
+    return entry->records + lane * entry->type->size;
 }
 
-static void look_for_first(nevh_ensemble *e, size_t lane, size_t o,
-                           nevh__record *r) {
-    const nevh__lane *l = &e->lanes[lane];
-    double value = e->now.value[o * e->stride + lane];
-    if (l->fresh)
-        r->value = value > 0 ? l->t : NAN;
-    else if (value > 0)
-        r->value = nevh__ensemble_locate(e, &e->ago1, lane, o, 1, value);
-    else if (l->step > 1)
-        r->value = nevh__ensemble_graze(e, lane, o);
-    r->known = !isnan(r->value);
+/* The orbit of a lane, then an outcome of it. */
+static void turn_to_lane(nevh__observation *at, size_t lane) {
+    const nevh_ensemble *e = at->ensemble;
+    at->lane = lane;
+    at->step = e->lanes[lane].step;
+    at->t = e->lanes[lane].t;
+    at->t_before = e->ago1.t[lane];
 }
 
-static void take(nevh_ensemble *e, size_t lane, size_t o) {
-    nevh__record *r = &e->records[o * e->width + lane];
-    const nevh__lane *l = &e->lanes[lane];
-    size_t i = o * e->stride + lane;
-    double value = e->now.value[i];
-    if (l->fresh)
-        *r = (nevh__record){.value = NAN, .samples = r->samples};
-    switch (e->outcomes[o].kind) {
-    case NEVH_OUTCOME_FIRST:
-        if (!r->known)
-            look_for_first(e, lane, o, r);
-        break;
-    case NEVH_OUTCOME_LAST:
-        r->value = value;
-        break;
-    case NEVH_OUTCOME_MINIMUM:
-        if (l->fresh || isnan(value) || value < r->value)
-            r->value = value;
-        break;
-    case NEVH_OUTCOME_MAXIMUM:
-        if (l->fresh || isnan(value) || value > r->value)
-            r->value = value;
-        break;
-    case NEVH_OUTCOME_MEAN:
-        if (l->fresh)
-            r->value = 0;
-        else
-            add(r, (l->t - e->ago1.t[lane]) / 2 * (e->ago1.value[i] + value));
-        break;
-    case NEVH_OUTCOME_FREQUENCY:
-        if (l->fresh)
-            nevh_spectral_samples_restart(r->samples);
-        nevh_spectral_samples_take(r->samples, l->step, l->t, value);
-        break;
-    default:
-        break;
+static void *turn_to_outcome(nevh__observation *at, size_t o) {
+    const nevh_ensemble *e = at->ensemble;
+    const nevh__outcome_entry *entry = &e->outcomes[o];
+    size_t i = o * e->stride + at->lane;
+    at->outcome = o;
+    at->decl = &entry->decl;
+    at->value = e->now.value[i];
+    at->value_before = e->ago1.value[i];
+    return entry->records + at->lane * entry->type->size;
+}
+
+static void take(nevh__observation *at, bool fresh) {
+    const nevh_ensemble *e = at->ensemble;
+    for (size_t o = 0; o < e->n_outcomes; o++) {
+        const nevh__outcome_type *type = e->outcomes[o].type;
+        if (fresh && type->begin)
+            type->begin(at, turn_to_outcome(at, o));
+        else if (!fresh && type->step)
+            type->step(at, turn_to_outcome(at, o));
     }
 }
 
 /* Nothing more can come of it. */
 static bool all_known(const nevh_ensemble *e, size_t lane) {
-    for (size_t i = 0; i < e->n_outcomes; i++)
-        if (!e->records[i * e->width + lane].known)
+    for (size_t o = 0; o < e->n_outcomes; o++) {
+        const nevh__outcome_type *type = e->outcomes[o].type;
+        if (!type->known || !type->known(nevh__record_of(e, o, lane)))
             return false;
+    }
     return e->n_outcomes > 0;
-}
-
-int nevh__ensemble_cross(void *ensemble, const nevh_point *point) {
-    nevh_ensemble *e = ensemble;
-    size_t o = e->crossing_of[point->section];
-    nevh__record *r = &e->records[o * e->width + e->crossing_lane];
-    r->first = r->count++ ? r->first : point->t;
-    r->last = point->t;
-    return 0;
 }
 
 static void look_at_energy(nevh_ensemble *e) {
@@ -176,6 +143,7 @@ static void look_at_energy(nevh_ensemble *e) {
 }
 
 void nevh__ensemble_look(nevh_ensemble *e) {
+    nevh__observation at = {.ensemble = e, .t_start = e->is.t_start};
     evaluate(e);
     if (e->energy)
         look_at_energy(e);
@@ -183,8 +151,8 @@ void nevh__ensemble_look(nevh_ensemble *e) {
         nevh__lane *l = &e->lanes[lane];
         if (!l->look || l->over)
             continue;
-        for (size_t i = 0; i < e->n_outcomes; i++)
-            take(e, lane, i);
+        turn_to_lane(&at, lane);
+        take(&at, l->fresh);
         l->over |=
             all_known(e, lane) || (e->is.stop.value && e->stop[lane] > 0);
         l->fresh = false;
@@ -199,58 +167,15 @@ void nevh__ensemble_fail(nevh_ensemble *e, size_t lane,
     e->lanes[lane].over = true;
 }
 
-/* Of the largest line; NAN where there is none, or too few samples, or less than
-   a turn of it. */
-static double frequency_of(const nevh__record *r, double period) {
-    nevh_spectral_line lines[LINES];
-    size_t found = 0, count;
-    double h;
-    nevh_spectral_samples_straighten(r->samples, period);
-    const double *values = nevh_spectral_samples_values(r->samples, &count, &h);
-    int status = nevh_frequencies(h, count, values, LINES, lines, &found);
-    if (status || !found)
-        return NAN;
-    double turns = lines[0].frequency * h * (double)(count - 1) / (2 * pi);
-    return turns < 1 ? NAN : lines[0].frequency;
-}
-
-static double number_of(const nevh_ensemble *e, size_t lane, size_t o) {
-    const nevh__record *r = &e->records[o * e->width + lane];
-    double span = e->lanes[lane].t - e->is.t_start;
-    switch (e->outcomes[o].kind) {
-    case NEVH_OUTCOME_TIME:
-        return e->lanes[lane].t;
-    case NEVH_OUTCOME_ENERGY_ERROR:
-        return nevh_energy_result(e->energy, lane).max;
-    case NEVH_OUTCOME_VERDICT:
-        return nevh_energy_result(e->energy, lane).verdict;
-    case NEVH_OUTCOME_MEAN:
-        return span != 0 ? (r->value + r->roundoff) / span
-                         : e->now.value[o * e->stride + lane];
-    case NEVH_OUTCOME_FREQUENCY:
-        return frequency_of(r, e->outcomes[o].modulus);
-    case NEVH_OUTCOME_CROSSINGS:
-        return (double)r->count;
-    case NEVH_OUTCOME_PERIOD:
-        return r->count > 1 ? (r->last - r->first) / (double)(r->count - 1)
-                            : NAN;
-    default:
-        return r->value;
-    }
-}
-
 static void collect(nevh_ensemble *e, size_t lane) {
+    nevh__observation at = {.ensemble = e, .t_start = e->is.t_start};
     double *to = e->result;
-    for (size_t i = 0; i < e->n_outcomes; i++) {
-        if (e->outcomes[i].kind != NEVH_OUTCOME_STATE) {
-            *to++ = number_of(e, lane, i);
-            continue;
-        }
-        for (size_t k = 0; k < e->n; k++, to++) {
-            to[0] = e->q[k * e->width + lane];
-            to[e->n] = e->p[k * e->width + lane];
-        }
-        to += e->n;
+    turn_to_lane(&at, lane);
+    for (size_t o = 0; o < e->n_outcomes; o++) {
+        const nevh__outcome_type *type = e->outcomes[o].type;
+        if (type->end)
+            type->end(&at, turn_to_outcome(&at, o), to);
+        to += type->whole_state ? 2 * e->n : 1;
     }
 }
 

@@ -135,10 +135,25 @@ bool nevh__scene_one_name(nevh_scene *s, const nevh__piece *name) {
                             name->text);
 }
 
+/* "; there are A, B, C", or nothing where there is no room for all. */
+static void list_known(const char *const known[], size_t count, char *text,
+                       size_t room) {
+    size_t used = 0;
+    for (size_t i = 0; i < count && used < room; i++)
+        used += (size_t)snprintf(text + used, room - used, "%s%s",
+                                 i           ? ", "
+                                 : count > 1 ? "; there are "
+                                             : "; there is ",
+                                 known[i]);
+    if (used >= room)
+        *text = '\0';
+}
+
 bool nevh__scene_fail_word(nevh_scene *s, const nevh__piece *at,
                            const char *what, const char *word,
                            const char *const known[], size_t count) {
     const char *best = NULL;
+    char all[200] = "";
     size_t most = nevh__characters(word) / 3 + 2;
     for (size_t i = 0; i < count; i++) {
         size_t far = nevh__words_apart(word, known[i]);
@@ -147,7 +162,9 @@ bool nevh__scene_fail_word(nevh_scene *s, const nevh__piece *at,
             best = known[i];
         }
     }
+    if (!best)
+        list_known(known, count, all, sizeof all);
     return nevh__scene_fail(s, NEVH_EINVAL, at, "there is no %s %s%s%s%s", what,
-                            word, best ? "; did you mean " : "",
+                            word, best ? "; did you mean " : all,
                             best ? best : "", best ? "?" : "");
 }

@@ -3,6 +3,7 @@
 #ifndef NEVH_SCENE_ENSEMBLE_PRIVATE_H
 #define NEVH_SCENE_ENSEMBLE_PRIVATE_H
 
+#include "ensemble/outcomes/outcome_private.h"
 #include "scene/scene_private.h"
 #include <nevh/ensemble.h>
 
@@ -31,7 +32,7 @@ typedef struct {
 } nevh__varied;
 
 typedef struct {
-    nevh_outcome_kind kind;
+    const nevh__outcome_type *type;
     nevh__piece piece;       /* the whole */
     nevh__piece left, right; /* LEFT > RIGHT; or the formula on the left */
     bool below;              /* LEFT < RIGHT */

@@ -5,29 +5,6 @@
 
 enum { ANYTHING = NEVH__READS_TIME | NEVH__READS_STATE | NEVH__READS_V };
 
-typedef enum { NOTHING, CONDITION, FORMULA, SECTION } argument;
-static const struct {
-    const char *name;
-    argument takes;
-} kinds[] = {
-    [NEVH_OUTCOME_STATE] = {"state", NOTHING},
-    [NEVH_OUTCOME_TIME] = {"t", NOTHING},
-    [NEVH_OUTCOME_ENERGY_ERROR] = {"energy_error", NOTHING},
-    [NEVH_OUTCOME_VERDICT] = {"verdict", NOTHING},
-    [NEVH_OUTCOME_FIRST] = {"first", CONDITION},
-    [NEVH_OUTCOME_LAST] = {"last", FORMULA},
-    [NEVH_OUTCOME_MINIMUM] = {"min", FORMULA},
-    [NEVH_OUTCOME_MAXIMUM] = {"max", FORMULA},
-    [NEVH_OUTCOME_MEAN] = {"mean", FORMULA},
-    [NEVH_OUTCOME_CROSSINGS] = {"crossings", SECTION},
-    [NEVH_OUTCOME_PERIOD] = {"period", SECTION},
-    [NEVH_OUTCOME_FREQUENCY] = {"frequency", FORMULA},
-    [NEVH_OUTCOME_LYAPUNOV] = {"lyapunov", NOTHING},
-    [NEVH_OUTCOME_SALI] = {"sali", NOTHING},
-    [NEVH_OUTCOME_MEGNO] = {"megno", NOTHING},
-};
-enum { KINDS = sizeof kinds / sizeof *kinds };
-
 /* FORMULA > FORMULA, or with < */
 static bool take_condition(nevh_scene *s, nevh__scene_model *m,
                            const nevh__piece *inside, nevh__scene_outcome *o) {
@@ -74,39 +51,38 @@ static bool take_section(nevh_scene *s, nevh__scene_model *m,
 
 static bool take_inside(nevh_scene *s, nevh__scene_model *m,
                         const nevh__piece *inside, nevh__scene_outcome *o) {
-    argument takes = kinds[o->kind].takes;
-    if (takes == NOTHING && inside)
-        return nevh__scene_fail(s, NEVH_EINVAL, &o->piece,
-                                "%s stands alone, without parentheses",
-                                kinds[o->kind].name);
-    if (takes == SECTION)
+    nevh_outcome_takes takes = o->type->info.takes;
+    if (takes == NEVH_OUTCOME_TAKES_SECTION)
         return take_section(s, m, inside, o);
-    if (takes != NOTHING && !inside)
+    if (takes == NEVH_OUTCOME_TAKES_NOTHING)
+        return !inside ||
+               nevh__scene_fail(s, NEVH_EINVAL, &o->piece,
+                                "%s stands alone, without parentheses",
+                                o->type->info.name);
+    if (!inside)
         return nevh__scene_fail(s, NEVH_EINVAL, &o->piece,
-                                "this is written %s(%s)", kinds[o->kind].name,
-                                takes == CONDITION ? "FORMULA > FORMULA"
-                                                   : "FORMULA");
-    if (takes == CONDITION)
+                                "this is written %s(%s)", o->type->info.name,
+                                takes == NEVH_OUTCOME_TAKES_CONDITION
+                                    ? "FORMULA > FORMULA"
+                                    : "FORMULA");
+    if (takes == NEVH_OUTCOME_TAKES_CONDITION)
         return take_condition(s, m, inside, o);
-    if (takes == FORMULA) {
-        o->left = *inside;
-        return nevh__piece_check(s, m, inside, ANYTHING);
-    }
-    return true;
+    o->left = *inside;
+    return nevh__piece_check(s, m, inside, ANYTHING);
 }
 
 static bool fail_kind(nevh_scene *s, const nevh__piece *piece,
                       const char *name) {
-    const char *known[KINDS];
-    for (size_t i = 0; i < KINDS; i++)
-        known[i] = kinds[i].name;
-    return nevh__scene_fail_word(s, piece, "outcome", name, known, KINDS);
+    const char *known[NEVH__OUTCOME_COUNT];
+    for (size_t i = 0; i < NEVH__OUTCOME_COUNT; i++)
+        known[i] = nevh_outcomes()[i]->name;
+    return nevh__scene_fail_word(s, piece, "outcome", name, known,
+                                 NEVH__OUTCOME_COUNT);
 }
 
 static bool take_outcome(nevh_scene *s, nevh__scene_model *m,
                          const nevh__piece *piece, nevh__scene_outcome *o) {
     nevh__piece name, inside;
-    size_t kind = 0;
     o->piece = *piece;
     const char *open = strchr(piece->text, '(');
     size_t from = (size_t)(piece->at - piece->line->text);
@@ -116,11 +92,9 @@ static bool take_outcome(nevh_scene *s, nevh__scene_model *m,
     if (!name.text[0])
         return nevh__scene_fail(s, NEVH_EINVAL, piece,
                                 "an outcome is missing here");
-    while (kind < KINDS && strcmp(kinds[kind].name, name.text) != 0)
-        kind++;
-    if (kind == KINDS)
+    o->type = nevh__outcome_type_of(nevh_outcome_find(name.text));
+    if (!o->type)
         return fail_kind(s, &name, name.text);
-    o->kind = (nevh_outcome_kind)kind;
     if (!open)
         return take_inside(s, m, NULL, o);
     size_t end = bytes + 1 + nevh__formula_extent(open + 1, ")");

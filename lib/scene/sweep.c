@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { VARIED = -1 }; /* no outcome */
-
 static int out_of_memory(nevh_sweep *s) {
     return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
 }
@@ -30,20 +28,17 @@ static bool name_state(nevh_sweep *s) {
 
 static bool name_columns(nevh_sweep *s) {
     const nevh__scene_ensemble *e = s->ensemble;
-    for (size_t i = 0; i < e->n_varied; i++) {
-        s->kinds[i] = VARIED;
+    for (size_t i = 0; i < e->n_varied; i++)
         if (!name_column(s, "%s", e->varied[i].name))
             return false;
-    }
     for (size_t i = 0; i < s->n_outcomes; i++) {
         const nevh__scene_outcome *o = &s->outcomes[i];
         size_t first = s->columns;
-        if (o->kind == NEVH_OUTCOME_STATE
-                ? !name_state(s)
-                : !name_column(s, "%s", o->piece.text))
+        if (o->type->whole_state ? !name_state(s)
+                                 : !name_column(s, "%s", o->piece.text))
             return false;
         for (size_t k = first; k < s->columns; k++)
-            s->kinds[k] = (int)o->kind;
+            s->types[k] = o->type;
     }
     return true;
 }
@@ -63,16 +58,16 @@ static int take_outcomes(nevh_sweep *s) {
     s->outcomes = e->outcomes;
     s->n_outcomes = e->n_outcomes;
     if (!s->n_outcomes) {
-        s->default_outcomes[0].kind = NEVH_OUTCOME_STATE;
-        s->default_outcomes[1].kind = NEVH_OUTCOME_ENERGY_ERROR;
+        s->default_outcomes[0].type = &nevh__outcome_state;
+        s->default_outcomes[1].type = &nevh__outcome_energy_error;
         s->default_outcomes[1].piece.text = "energy_error";
         s->outcomes = s->default_outcomes;
         s->n_outcomes = 2;
     }
     size_t most = e->n_varied + s->n_outcomes * 2 * s->scene->model->n;
     s->names = nevh__array(most, sizeof *s->names);
-    s->kinds = nevh__array(most, sizeof *s->kinds);
-    if (!s->names || !s->kinds || !name_columns(s))
+    s->types = nevh__array(most, sizeof *s->types);
+    if (!s->names || !s->types || !name_columns(s))
         return out_of_memory(s);
     return check_names(s);
 }
@@ -146,7 +141,7 @@ void nevh_sweep_free(nevh_sweep *s) {
     for (size_t i = 0; i < s->columns; i++)
         free(s->names[i]);
     free(s->names);
-    free(s->kinds);
+    free(s->types);
     pthread_mutex_destroy(&s->lock);
     pthread_cond_destroy(&s->moved);
     free(s);
@@ -185,15 +180,11 @@ const char *nevh_sweep_column(const nevh_sweep *s, size_t k) {
 bool nevh_sweep_is_verdict(const nevh_sweep *s, size_t k) {
     if (!s)
         return false;
-    return k < s->columns && s->kinds[k] == NEVH_OUTCOME_VERDICT;
+    return k < s->columns && s->types[k] == &nevh__outcome_verdict;
 }
 
 bool nevh_sweep_is_of_values(const nevh_sweep *s, size_t k) {
-    if (!s || k >= s->columns)
-        return false;
-    int kind = s->kinds[k];
-    return kind == NEVH_OUTCOME_LAST || kind == NEVH_OUTCOME_MINIMUM ||
-           kind == NEVH_OUTCOME_MAXIMUM || kind == NEVH_OUTCOME_MEAN;
+    return s && k < s->columns && s->types[k] && s->types[k]->of_values;
 }
 
 bool nevh_sweep_native(const nevh_sweep *s, const char **why) {

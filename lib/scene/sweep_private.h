@@ -37,8 +37,8 @@ struct nevh_sweep {
     nevh__scene_outcome default_outcomes[2];
     const nevh__scene_outcome *outcomes;
     size_t n_outcomes, columns;
-    char **names; /* columns */
-    int *kinds;   /* nevh_outcome_kind; VARIED of what is varied */
+    char **names;                     /* columns */
+    const nevh__outcome_type **types; /* columns; NULL of what is varied */
     nevh__report report;
     bool native; /* steps of the scene as it is are compiled; else why not */
     char why_native[400];

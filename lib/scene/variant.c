@@ -59,21 +59,24 @@ static double period_of(const nevh__scene_model *m, const char *formula) {
 static bool make_outcome(nevh__variant *x, const nevh__scene_outcome *from,
                          nevh_outcome *to, nevh__report *report) {
     const char *left = from->left.text, *right = from->right.text;
-    to->kind = from->kind;
-    if (from->kind == NEVH_OUTCOME_FIRST)
+    const nevh_scene_section *is;
+    to->kind = nevh_outcome_find(from->type->info.name);
+    switch (from->type->info.takes) {
+    case NEVH_OUTCOME_TAKES_CONDITION:
         return make_quantity(x, from->below ? right : left,
                              from->below ? left : right, &to->quantity, report);
-    if (from->kind < NEVH_OUTCOME_FIRST || from->kind > NEVH_OUTCOME_FREQUENCY)
-        return true;
-    if (from->kind == NEVH_OUTCOME_FREQUENCY)
+    case NEVH_OUTCOME_TAKES_FORMULA:
         to->modulus = period_of(x->model, left);
-    if (from->kind < NEVH_OUTCOME_CROSSINGS ||
-        from->kind == NEVH_OUTCOME_FREQUENCY)
         return make_quantity(x, left, NULL, &to->quantity, report);
-    const nevh_scene_section *is = &x->model->crossings[from->section].decl;
-    to->direction = is->direction;
-    to->modulus = is->period;
-    return make_quantity(x, is->left, is->right, &to->quantity, report);
+    case NEVH_OUTCOME_TAKES_SECTION:
+        is = &x->model->crossings[from->section].decl;
+        to->direction = is->direction;
+        to->modulus = is->period;
+        return make_quantity(x, is->left, is->right, &to->quantity, report);
+    case NEVH_OUTCOME_TAKES_NOTHING:
+        break;
+    }
+    return true;
 }
 
 static bool make_stop(nevh__variant *x, nevh__report *report) {

@@ -361,6 +361,13 @@ TEST(nonsense_is_refused) {
     ck_assert_int_eq(nevh_ensemble_status(e), NEVH_EINVAL);
     nevh_ensemble_free(e);
     is.dt = 0.1;
+    for (int kind = -1; kind < 2000; kind += 2000) { /* there are none */
+        is.outcomes = &(nevh_outcome){.kind = kind, .quantity = q0};
+        e = nevh_ensemble_new(s, &is);
+        ck_assert_int_eq(nevh_ensemble_status(e), NEVH_EINVAL);
+        assert_says(nevh_ensemble_message(e), "no known kind");
+        nevh_ensemble_free(e);
+    }
     is.integrator = nevh_adaptive_verlet;
     is.outcomes = &(nevh_outcome){.kind = NEVH_OUTCOME_FREQUENCY,
                                   .quantity = {first_coordinate, &zero, false}};
@@ -375,6 +382,36 @@ TEST(nonsense_is_refused) {
     nevh_system_free(s);
     nevh_ensemble_free(NULL);
     ck_assert_int_eq(nevh_ensemble_status(NULL), NEVH_ENOMEM);
+}
+
+/* Constants are numbers in programs that were compiled before. */
+TEST(constants_are_places_in_the_list) {
+    static const char *const names[] = {[NEVH_OUTCOME_STATE] = "state",
+                                        [NEVH_OUTCOME_TIME] = "t",
+                                        [NEVH_OUTCOME_ENERGY_ERROR] =
+                                            "energy_error",
+                                        [NEVH_OUTCOME_VERDICT] = "verdict",
+                                        [NEVH_OUTCOME_FIRST] = "first",
+                                        [NEVH_OUTCOME_LAST] = "last",
+                                        [NEVH_OUTCOME_MINIMUM] = "min",
+                                        [NEVH_OUTCOME_MAXIMUM] = "max",
+                                        [NEVH_OUTCOME_MEAN] = "mean",
+                                        [NEVH_OUTCOME_CROSSINGS] = "crossings",
+                                        [NEVH_OUTCOME_PERIOD] = "period",
+                                        [NEVH_OUTCOME_FREQUENCY] = "frequency",
+                                        [NEVH_OUTCOME_LYAPUNOV] = "lyapunov",
+                                        [NEVH_OUTCOME_SALI] = "sali",
+                                        [NEVH_OUTCOME_MEGNO] = "megno"};
+    ck_assert_int_eq(NEVH_OUTCOME_MEGNO, 14);
+    for (int kind = 0; kind <= NEVH_OUTCOME_MEGNO; kind++)
+        ck_assert_int_eq(nevh_outcome_find(names[kind]), kind);
+    for (int kind = 0; nevh_outcomes()[kind]; kind++) {
+        const nevh_outcome_info *info = nevh_outcomes()[kind];
+        ck_assert_int_eq(nevh_outcome_find(info->name), kind);
+        ck_assert_str_ne(info->help, "");
+    }
+    ck_assert_int_eq(nevh_outcome_find("men"), -1);
+    ck_assert_int_eq(nevh_outcome_find(NULL), -1);
 }
 
 /* A system that changes after planning is noticed. */

@@ -41,6 +41,7 @@ completes 'nevh run pendulum --plot-kind conf' configuration
 completes 'nevh new x.nevh --from kepler-' kepler-0.9
 completes 'nevh swe' sweep
 completes 'nevh sweep pendulum --outcomes state,peri' state,period
+completes 'nevh sweep pendulum --outcomes freq' 'frequency('
 completes 'nevh compare --quiet keple' 'kepler-0.9 kepler'
 
 # Names that a shell would run, expand or divide are names, of scenes, files, folders

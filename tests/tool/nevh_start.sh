@@ -32,7 +32,7 @@ has '^1(,0)*$'
 
 # What is no start, or no parameter.
 exits 2 run pendulum --start start=1
-says '--start: there is no coordinate, momentum .* start$'
+says '--start: there is no coordinate, momentum .* start; there are phi, p_phi'
 exits 2 run double-pendulum --start fhi1=1
 says 'did you mean phi1'
 exits 2 run pendulum --set phi=1

@@ -176,6 +176,17 @@ refuses() {
 refuses 'nothing is varied' pendulum
 refuses 'there is no outcome frist; did you mean first' pendulum-periods \
     --outcomes 'frist(phi > 1)'
+# Refusals, help and the manual have the same outcomes.
+exits 0 help sweep
+sed -n '/^Outcomes:/,$s/^  \([a-z][a-z_]*\).*/\1/p' $work/out >$work/outcomes
+test "$(wc -l <$work/outcomes)" -ge 15 || fails 'lists few outcomes'
+refuses "there is no outcome zzzzzzzz; there are $(paste -sd, $work/outcomes |
+    sed 's/,/, /g')" pendulum-periods --outcomes zzzzzzzz
+awk '/^@section/ { on = /Outcomes/ } on && sub(/^@item /, "") {
+        gsub(/\([^)]*\)/, ""); gsub(/, /, "\n"); print }' "$srcdir/doc/nevh.texi" |
+    sort >$work/items
+sort $work/outcomes | diff - $work/items ||
+    fails 'has other outcomes than doc/nevh.texi'
 refuses 'sali stands alone' pendulum-periods --outcomes 'sali(phi)'
 refuses 'needs samples at equal times' kepler-0.9 --vary 'x = 1, 1.1' \
     --outcomes 'frequency(x)' --integrators adaptive-verlet

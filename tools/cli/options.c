@@ -108,9 +108,7 @@ static const struct {
      "the standard deviation of all measured numbers; columns sigma or "
      "sigma_NAME of the data give it for each point"},
     {"outcomes", "A,B", FOR_SWEEP, read_outcomes,
-     "columns: state, t, energy_error, verdict, first(A > B), last(F), min(F), "
-     "max(F), mean(F), crossings, period, frequency(F), lyapunov, sali, "
-     "megno"},
+     "columns, such as mean(F); nevh help sweep lists them"},
     {"retry", NULL, FOR_SWEEP, read_retry,
      "with --resume: repeat the members that failed"},
     {"stop-after", "TIME", FOR_SWEEP | FOR_REFERENCE, read_stop_after,

@@ -302,6 +302,7 @@ int options_check(const options *, unsigned which);
 void settings_notes(const options *, list *notes);
 void options_free(options *);
 void options_help(FILE *, unsigned which);
+void outcomes_help(FILE *); /* ensemble/sweep.c: what --outcomes takes */
 /* Words of a help text between columns, in lines of 80 characters: the first
    begins after `used` characters. */
 void help_print(FILE *, int used, int column, const char *text);

@@ -138,27 +138,28 @@ static void span(const direction *d, double *low, double *high) {
     *high = last[0] + (last[0] - last[-1]) / 2;
 }
 
-/* Of rates, "frequency(x) (rad/s)"; NULL: the column is none. */
-static char *rate_label(const map *m, const char *name) {
-    const char *unit = nevh_scene_label(m->plan->scene, "t");
-    bool angle = strncmp(name, "frequency(", 10) == 0;
-    if (!angle && strcmp(name, "lyapunov") != 0)
-        return NULL;
-    return *unit ? text_print("%s (%s/%s)", name, angle ? "rad" : "1", unit)
-                 : text_print("%s", name);
+/* Of a column "NAME(...)" that is an outcome. */
+static nevh_outcome_unit unit_of_column(const map *m, size_t column) {
+    const char *name = nevh_sweep_column(m->sweep, column);
+    char *word = text_print("%.*s", (int)strcspn(name, "("), name);
+    int kind = column < m->varied ? -1 : nevh_outcome_find(word);
+    free(word);
+    return kind < 0 ? NEVH_UNIT_NONE : nevh_outcomes()[kind]->unit;
 }
 
+/* "frequency(x) (rad/s)" */
 static char *label_of(const map *m, size_t column) {
     const char *name = nevh_sweep_column(m->sweep, column);
-    char *rate = rate_label(m, name);
-    if (rate)
-        return rate;
-    bool time = strncmp(name, "first(", 6) == 0 || strcmp(name, "t") == 0 ||
-                strncmp(name, "period", 6) == 0;
-    const char *inner = strchr(name, '(');
-    char *of = time ? text_print("t")
-               : inner && strncmp(name, "first", 5) != 0
-                   ? text_print("%.*s", (int)strcspn(inner + 1, ")"), inner + 1)
+    const char *t = nevh_scene_label(m->plan->scene, "t");
+    nevh_outcome_unit unit = unit_of_column(m, column);
+    if (unit == NEVH_UNIT_FREQUENCY || unit == NEVH_UNIT_RATE)
+        return *t ? text_print("%s (%s/%s)", name,
+                               unit == NEVH_UNIT_RATE ? "1" : "rad", t)
+                  : text_print("%s", name);
+    const char *inner = name + strcspn(name, "(");
+    char *of = unit == NEVH_UNIT_TIME ? text_print("t")
+               : unit == NEVH_UNIT_OF_FORMULA
+                   ? text_print("%.*s", (int)strcspn(inner, ")") - 1, inner + 1)
                    : text_print("%s", name);
     char *label = plot_label(m->plan, name, of);
     free(of);

@@ -264,6 +264,17 @@ static int check_options(const options *o) {
     return TOOL_OK;
 }
 
+/* Outcomes, as they are written. */
+void outcomes_help(FILE *f) {
+    static const char *const argument[] = {"", "(F)", "(A > B)", ""};
+    fputs("\nOutcomes:\n", f);
+    for (size_t k = 0; nevh_outcomes()[k]; k++) {
+        const nevh_outcome_info *o = nevh_outcomes()[k];
+        int used = fprintf(f, "  %s%s", o->name, argument[o->takes]);
+        help_print(f, used, 28, o->help);
+    }
+}
+
 int sweep(const options *o) {
     sweep_job j = {.options = o};
     int status = check_options(o);

@@ -1,4 +1,4 @@
-/* nevh: outcomes that tell chaos.
+/* nevh: the outcomes lyapunov, sali and megno, which tell chaos.
 
    They are of orbits of their own, with displacements, which nevh_chaos takes
    side by side.  Where other outcomes are asked for too, an orbit waits here,
@@ -30,27 +30,50 @@ struct nevh__chaotic {
     double numbers[];
 };
 
-static bool tells_chaos(const nevh_outcome *o) {
-    return o->kind >= NEVH_OUTCOME_LYAPUNOV;
+static double lyapunov(const nevh__chaos_member *found) {
+    return found->exponent;
+}
+
+static double sali(const nevh__chaos_member *found) {
+    return found->sali;
+}
+
+static double megno(const nevh__chaos_member *found) {
+    return found->megno;
+}
+
+const nevh__outcome_type nevh__outcome_lyapunov = {
+    .info = {.name = "lyapunov",
+             .unit = NEVH_UNIT_RATE,
+             .help = "the largest Lyapunov exponent"},
+    .of_chaos = lyapunov,
+};
+const nevh__outcome_type nevh__outcome_sali = {
+    .info = {.name = "sali",
+             .help = "the alignment of two displacements; of chaos below 1e-8"},
+    .of_chaos = sali,
+};
+const nevh__outcome_type nevh__outcome_megno = {
+    .info = {.name = "megno",
+             .help = "the mean growth of displacements; 2 of a regular orbit"},
+    .of_chaos = megno,
+};
+
+/* How many outcomes tell chaos. */
+static size_t count_telling(const nevh_ensemble *e) {
+    size_t count = 0;
+    for (size_t i = 0; i < e->n_outcomes; i++)
+        count += e->outcomes[i].type->of_chaos != NULL;
+    return count;
 }
 
 bool nevh__ensemble_tells_chaos(const nevh_ensemble *e) {
-    for (size_t i = 0; i < e->n_outcomes; i++)
-        if (tells_chaos(&e->outcomes[i]))
-            return true;
-    return false;
+    return count_telling(e) > 0;
 }
 
-static bool all_tell(const nevh_ensemble *e, nevh_outcome_kind kind) {
+static bool asks(const nevh_ensemble *e, const nevh__outcome_type *type) {
     for (size_t i = 0; i < e->n_outcomes; i++)
-        if (e->outcomes[i].kind < kind)
-            return false;
-    return !e->is.stop.value;
-}
-
-static bool asks(const nevh_ensemble *e, nevh_outcome_kind kind) {
-    for (size_t i = 0; i < e->n_outcomes; i++)
-        if (e->outcomes[i].kind == kind)
+        if (e->outcomes[i].type == type)
             return true;
     return false;
 }
@@ -94,12 +117,12 @@ int nevh__chaotic_plan(nevh_ensemble *e, const nevh_options *options) {
         x->queue[i].start = x->numbers + lanes + i * each;
         x->queue[i].values = x->queue[i].start + 2 * e->n;
     }
-    x->alone = all_tell(e, NEVH_OUTCOME_LYAPUNOV);
+    x->alone = count_telling(e) == e->n_outcomes && !e->is.stop.value;
     x->jobs = (nevh__chaos_jobs){
         .data = e,
-        .sparse = !asks(e, NEVH_OUTCOME_MEGNO),
+        .sparse = !asks(e, &nevh__outcome_megno),
         .aligned =
-            !asks(e, NEVH_OUTCOME_MEGNO) && !asks(e, NEVH_OUTCOME_LYAPUNOV),
+            !asks(e, &nevh__outcome_megno) && !asks(e, &nevh__outcome_lyapunov),
         .together = e->together,
     };
     return plan_chaos(e, options);
@@ -125,13 +148,10 @@ void nevh__chaotic_begin(nevh_ensemble *e, size_t lane) {
 static void fill_in(const nevh_ensemble *e, const nevh__chaos_member *found,
                     double values[]) {
     for (size_t i = 0; i < e->n_outcomes; i++) {
-        nevh_outcome_kind kind = e->outcomes[i].kind;
-        if (kind >= NEVH_OUTCOME_LYAPUNOV)
-            *values = found->status                   ? NAN
-                      : kind == NEVH_OUTCOME_LYAPUNOV ? found->exponent
-                      : kind == NEVH_OUTCOME_SALI     ? found->sali
-                                                      : found->megno;
-        values += kind == NEVH_OUTCOME_STATE ? 2 * e->n : 1;
+        const nevh__outcome_type *type = e->outcomes[i].type;
+        if (type->of_chaos)
+            *values = type->of_chaos(found);
+        values += type->whole_state ? 2 * e->n : 1;
     }
 }
 

@@ -1,4 +1,4 @@
-/* nevh: crossings of orbits side by side.
+/* nevh: the outcomes crossings and period: of a section, orbits side by side.
 
    Values, and slopes along the flow, are taken of all lanes at once.  They are
    those that lib/run/section.c takes of one orbit; where they tell that a value
@@ -16,7 +16,78 @@ struct nevh__crossing_lanes {
     double numbers[];
 };
 
-bool nevh__crossing_lanes_plan(nevh_ensemble *e) {
+typedef struct {
+    double first, last; /* times */
+    size_t count;
+} crossed;
+
+static void begin(const nevh__observation *at, void *record) {
+    (void)at;
+    *(crossed *)record = (crossed){0};
+}
+
+static void end_crossings(const nevh__observation *at, const void *record,
+                          double result[]) {
+    (void)at;
+    *result = (double)((const crossed *)record)->count;
+}
+
+/* NAN below two crossings. */
+static void end_period(const nevh__observation *at, const void *record,
+                       double result[]) {
+    const crossed *x = record;
+    (void)at;
+    *result =
+        x->count > 1 ? (x->last - x->first) / (double)(x->count - 1) : NAN;
+}
+
+const nevh__outcome_type nevh__outcome_crossings = {
+    .info = {.name = "crossings",
+             .takes = NEVH_OUTCOME_TAKES_SECTION,
+             .help = "how often a section is crossed"},
+    .branches = true,
+    .size = sizeof(crossed),
+    .begin = begin,
+    .end = end_crossings,
+};
+const nevh__outcome_type nevh__outcome_period = {
+    .info = {.name = "period",
+             .takes = NEVH_OUTCOME_TAKES_SECTION,
+             .unit = NEVH_UNIT_TIME,
+             .help = "the mean time between crossings of a section"},
+    .branches = true,
+    .size = sizeof(crossed),
+    .begin = begin,
+    .end = end_period,
+};
+
+/* A section's value, at the state beside the orbits. */
+typedef struct {
+    nevh_ensemble *ensemble;
+    size_t outcome;
+} crossing;
+
+static int value_of_crossing(void *data, double t, const double q[],
+                             const double p[], double *value) {
+    const crossing *c = data;
+    nevh_ensemble *e = c->ensemble;
+    memcpy(e->q1, q, e->n * sizeof *q);
+    memcpy(e->p1, p, e->n * sizeof *p);
+    *value = nevh__narrow_value(e, c->outcome, t);
+    return NEVH_OK;
+}
+
+/* A point of a section of e->crossing_lane. */
+static int cross(void *ensemble, const nevh_point *point) {
+    const nevh_ensemble *e = ensemble;
+    crossed *x =
+        nevh__record_of(e, e->crossing_of[point->section], e->crossing_lane);
+    x->first = x->count++ ? x->first : point->t;
+    x->last = point->t;
+    return 0;
+}
+
+static bool plan_lanes(nevh_ensemble *e) {
     size_t rows = 4 * e->n + 2 * e->n_crossings + 3;
     nevh__crossing_lanes *c = nevh__array(
         1, sizeof *c + (rows * e->stride + NEVH__LANES) * sizeof *c->numbers);
@@ -36,10 +107,37 @@ bool nevh__crossing_lanes_plan(nevh_ensemble *e) {
     return true;
 }
 
-void nevh__crossing_lanes_free(nevh__crossing_lanes *c) {
-    if (c)
-        free(c->came);
-    free(c);
+/* The crossings are freed with the ensemble, as data of the first. */
+int nevh__ensemble_plan_crossings(nevh_ensemble *e) {
+    crossing *data = nevh__array(e->n_crossings, sizeof *data);
+    if (!data)
+        return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
+    for (size_t i = 0; i < e->n_crossings; i++) {
+        const nevh_outcome *o = &e->outcomes[e->crossing_of[i]].decl;
+        data[i] = (crossing){e, e->crossing_of[i]};
+        e->crossings[i] = (nevh_section){.value = value_of_crossing,
+                                         .data = &data[i],
+                                         .direction = o->direction,
+                                         .period = o->modulus};
+    }
+    e->sections = nevh_sections_new(e->alone ? e->stepper : e->narrow,
+                                    e->crossings, e->n_crossings, cross, e);
+    if (e->sections && nevh_sections_status(e->sections))
+        return nevh__fail_as(&e->report, &e->sections->report);
+    return e->sections && (e->alone || plan_lanes(e))
+               ? NEVH_OK
+               : nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
+}
+
+void nevh__ensemble_free_crossings(nevh_ensemble *e) {
+    nevh_sections_free(e->sections);
+    if (e->crossing_lanes)
+        free(e->crossing_lanes->came);
+    free(e->crossing_lanes);
+    if (e->n_crossings && e->crossings)
+        free(e->crossings[0].data);
+    free(e->crossing_of);
+    free(e->crossings);
 }
 
 /* dp/dt and dq/dt of a lane alone, where one of them has none. */

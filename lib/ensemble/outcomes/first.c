@@ -1,4 +1,4 @@
-/* nevh: when a quantity is above 0 for the first time.
+/* nevh: the outcome first(A > B): when a condition holds for the first time.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "ensemble/ensemble_private.h"
 #include <float.h>
@@ -77,9 +77,10 @@ static double result(search *s, double t) {
     return NAN;
 }
 
-double nevh__ensemble_locate(nevh_ensemble *e, const nevh__snapshot *from,
-                             size_t lane, size_t o, double until,
-                             double value_until) {
+/* The time at which the value first is above 0 between the snapshot and `until`, a
+   part of the step from it, where it is above 0. */
+static double locate(nevh_ensemble *e, const nevh__snapshot *from, size_t lane,
+                     size_t o, double until, double value_until) {
     search s = {.e = e, .from = from, .lane = lane, .outcome = o};
     s.at_a = from->value[o * e->stride + lane];
     s.b = until;
@@ -137,7 +138,9 @@ static bool find_maximum(search *s, double t[3], double g[3], double *at,
     return false;
 }
 
-double nevh__ensemble_graze(nevh_ensemble *e, size_t lane, size_t o) {
+/* The time at which it first is between the last three states, none of which is
+   above 0; NAN where it is not, as far as parabolas tell. */
+static double graze(nevh_ensemble *e, size_t lane, size_t o) {
     size_t i = o * e->stride + lane;
     double g[3] = {e->ago2.value[i], e->ago1.value[i], e->now.value[i]};
     if (!(g[1] >= g[0] && g[1] >= g[2] && g[0] > -INFINITY && g[2] > -INFINITY))
@@ -150,5 +153,43 @@ double nevh__ensemble_graze(nevh_ensemble *e, size_t lane, size_t o) {
         return NAN;
     }
     double part = part_of(&s, at);
-    return nevh__ensemble_locate(e, s.from, lane, o, part, value);
+    return locate(e, s.from, lane, o, part, value);
 }
+
+static void begin(const nevh__observation *at, void *record) {
+    *(double *)record = at->value > 0 ? at->t : NAN;
+}
+
+static bool known(const void *record) {
+    return !isnan(*(const double *)record);
+}
+
+static void step(const nevh__observation *at, void *record) {
+    nevh_ensemble *e = at->ensemble;
+    if (known(record))
+        return;
+    if (at->value > 0)
+        *(double *)record =
+            locate(e, &e->ago1, at->lane, at->outcome, 1, at->value);
+    else if (at->step > 1)
+        *(double *)record = graze(e, at->lane, at->outcome);
+}
+
+static void end(const nevh__observation *at, const void *record,
+                double result[]) {
+    (void)at;
+    *result = *(const double *)record;
+}
+
+const nevh__outcome_type nevh__outcome_first = {
+    .info = {.name = "first",
+             .takes = NEVH_OUTCOME_TAKES_CONDITION,
+             .unit = NEVH_UNIT_TIME,
+             .help = "the first time at which a condition holds"},
+    .branches = true,
+    .size = sizeof(double),
+    .begin = begin,
+    .step = step,
+    .known = known,
+    .end = end,
+};

@@ -1,0 +1,49 @@
+/* nevh: the outcomes min(F) and max(F): over the steps.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "ensemble/outcomes/outcome_private.h"
+#include <math.h>
+
+static void begin(const nevh__observation *at, void *record) {
+    *(double *)record = at->value;
+}
+
+static void step_min(const nevh__observation *at, void *record) {
+    double *least = record;
+    if (isnan(at->value) || at->value < *least)
+        *least = at->value;
+}
+
+static void step_max(const nevh__observation *at, void *record) {
+    double *most = record;
+    if (isnan(at->value) || at->value > *most)
+        *most = at->value;
+}
+
+static void end(const nevh__observation *at, const void *record,
+                double result[]) {
+    (void)at;
+    *result = *(const double *)record;
+}
+
+const nevh__outcome_type nevh__outcome_min = {
+    .info = {.name = "min",
+             .takes = NEVH_OUTCOME_TAKES_FORMULA,
+             .unit = NEVH_UNIT_OF_FORMULA,
+             .help = "the smallest value of a formula after a step"},
+    .of_values = true,
+    .size = sizeof(double),
+    .begin = begin,
+    .step = step_min,
+    .end = end,
+};
+const nevh__outcome_type nevh__outcome_max = {
+    .info = {.name = "max",
+             .takes = NEVH_OUTCOME_TAKES_FORMULA,
+             .unit = NEVH_UNIT_OF_FORMULA,
+             .help = "the largest value of a formula after a step"},
+    .of_values = true,
+    .size = sizeof(double),
+    .begin = begin,
+    .step = step_max,
+    .end = end,
+};

@@ -1,0 +1,68 @@
+/* nevh: the outcome frequency(F): of the largest line in the spectrum of a formula.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "ensemble/ensemble_private.h"
+#include <math.h>
+
+static const double pi = 3.14159265358979323846;
+enum { LINES = 3 }; /* of a spectrum, of which the largest is told */
+enum { MOST_SAMPLES = 1 << 12 }; /* of an orbit */
+
+typedef nevh_spectral_samples *samples;
+
+static int plan(nevh_ensemble *e, size_t outcome, const nevh_options *o) {
+    samples *records = nevh__record_of(e, outcome, 0);
+    if (e->is.integrator->own_time || o->transform)
+        return nevh__fail(&e->report, NEVH_EINVAL,
+                          "frequency: it needs samples at equal times, and "
+                          "%s chooses times of its own: choose another "
+                          "integrator",
+                          e->is.integrator->name);
+    for (size_t lane = 0; lane < e->width; lane++)
+        if (!(records[lane] = nevh_spectral_samples_new(MOST_SAMPLES)))
+            return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
+    return NEVH_OK;
+}
+
+static void clear(void *record) {
+    nevh_spectral_samples_free(*(samples *)record);
+}
+
+static void step(const nevh__observation *at, void *record) {
+    nevh_spectral_samples_take(*(samples *)record, at->step, at->t, at->value);
+}
+
+static void begin(const nevh__observation *at, void *record) {
+    nevh_spectral_samples_restart(*(samples *)record);
+    step(at, record);
+}
+
+/* NAN where there is no line, or too few samples, or less than a turn. */
+static void end(const nevh__observation *at, const void *record,
+                double result[]) {
+    samples kept = *(const samples *)record;
+    nevh_spectral_line lines[LINES];
+    size_t found = 0, count;
+    double h;
+    nevh_spectral_samples_straighten(kept, at->decl->modulus);
+    const double *values = nevh_spectral_samples_values(kept, &count, &h);
+    int status = nevh_frequencies(h, count, values, LINES, lines, &found);
+    *result = NAN;
+    if (status || !found)
+        return;
+    double turns = lines[0].frequency * h * (double)(count - 1) / (2 * pi);
+    if (!(turns < 1))
+        *result = lines[0].frequency;
+}
+
+const nevh__outcome_type nevh__outcome_frequency = {
+    .info = {.name = "frequency",
+             .takes = NEVH_OUTCOME_TAKES_FORMULA,
+             .unit = NEVH_UNIT_FREQUENCY,
+             .help = "of the largest line in the spectrum of a formula"},
+    .size = sizeof(samples),
+    .plan = plan,
+    .clear = clear,
+    .begin = begin,
+    .step = step,
+    .end = end,
+};

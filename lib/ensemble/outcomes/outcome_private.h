@@ -1,0 +1,67 @@
+/* nevh: kinds of outcomes: what is kept of an orbit under way, and what of it is
+   handed on.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_OUTCOME_PRIVATE_H
+#define NEVH_OUTCOME_PRIVATE_H
+
+#include "diagnose/chaos_private.h"
+#include <nevh/ensemble.h>
+
+/* Names of all kinds, in the order of nevh_outcome_kind; a new one is the last.
+   NAME is defined as nevh__outcome_NAME by a file in this folder. */
+#define NEVH__OUTCOMES(X)                                                      \
+    X(state)                                                                   \
+    X(t)                                                                       \
+    X(energy_error)                                                            \
+    X(verdict)                                                                 \
+    X(first)                                                                   \
+    X(last)                                                                    \
+    X(min)                                                                     \
+    X(max)                                                                     \
+    X(mean)                                                                    \
+    X(crossings)                                                               \
+    X(period)                                                                  \
+    X(frequency)                                                               \
+    X(lyapunov)                                                                \
+    X(sali)                                                                    \
+    X(megno)
+
+/* An orbit at its start, after a step, or at its end. */
+typedef struct {
+    nevh_ensemble *ensemble;
+    const nevh_outcome *decl;
+    size_t outcome, lane;          /* numbers */
+    size_t step;                   /* 0: the start */
+    double t_start, t, value;      /* value: of the quantity, if there is one */
+    double t_before, value_before; /* a step ago; of no use at the start */
+} nevh__observation;
+
+/* Functions may be NULL, but for `end` or `of_chaos`.  A record is what is kept of
+   an orbit under way; it is 0 until `plan` is called. */
+typedef struct {
+    nevh_outcome_info info;
+    bool whole_state; /* 2n numbers; others: one */
+    bool of_values;   /* NAN only where the quantity is undefined */
+    bool of_energy;   /* the ensemble has a nevh_energy */
+    bool branches;    /* shorter steps branch off from states before */
+    size_t size;      /* of a record, in bytes */
+    int (*plan)(nevh_ensemble *, size_t outcome, const nevh_options *);
+    void (*clear)(void *record);
+    void (*begin)(const nevh__observation *, void *record);
+    void (*step)(const nevh__observation *, void *record);
+    bool (*known)(const void *record); /* it will not change any more */
+    void (*end)(const nevh__observation *, const void *record, double result[]);
+    double (*of_chaos)(const nevh__chaos_member *);
+} nevh__outcome_type;
+
+#define NEVH__OUTCOME_DECLARE(name)                                            \
+    extern const nevh__outcome_type nevh__outcome_##name;
+NEVH__OUTCOMES(NEVH__OUTCOME_DECLARE)
+
+#define NEVH__OUTCOME_ONE(name) +1
+enum { NEVH__OUTCOME_COUNT = 0 NEVH__OUTCOMES(NEVH__OUTCOME_ONE) };
+
+/* outcomes.c: by number; NULL: there is none of that number. */
+const nevh__outcome_type *nevh__outcome_type_of(int kind);
+
+#endif
