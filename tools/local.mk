@@ -5,6 +5,9 @@ tools_nevh_SOURCES = \
 	tools/experiment/row.h \
 	tools/experiment/pace.h \
 	tools/nevh.c \
+	tools/commands.c \
+	tools/help.c \
+	tools/cli/commands.h \
 	tools/cli/options_private.h \
 	tools/cli/options.c \
 	tools/cli/arguments.c \
@@ -64,7 +67,7 @@ tools_nevh_SOURCES = \
 	tools/orbit/reference.c \
 	tools/experiment/stability.c \
 	tools/search/remedy.c \
-	tools/inspect/trial_run.c \
+	tools/experiment/trial_run.c \
 	tools/inspect/smoothness.c \
 	tools/hard/hard_private.h \
 	tools/hard/hard_cases.c \
@@ -88,7 +91,7 @@ tools_nevh_SOURCES = \
 	tools/report/film.c \
 	tools/report/film_html.c \
 	tools/report/film_private.h \
-	tools/report/page_html.c \
+	tools/cli/page_html.c \
 	tools/report/live_page.c \
 	tools/ensemble/map.h \
 	tools/ensemble/map.c \
@@ -118,8 +121,8 @@ tools_nevh_SOURCES = \
 	tools/plot/plot_quote.c \
 	tools/plot/plot_gnuplot.c \
 	tools/plot/plot_write.c \
-	tools/plot/envelope.h \
-	tools/plot/envelope.c \
+	tools/experiment/envelope.h \
+	tools/experiment/envelope.c \
 	tools/plot/energy_plot.h \
 	tools/plot/energy_plot.c \
 	tools/plot/order_plot.h \

@@ -7,7 +7,9 @@ narrow() {
     awk 'length($0) > 80 { print; wide = 1 } END { exit wide }' $work/out ||
         fails "is wider than 80 columns"
 }
-commands="compare run cost recommend gradients check effects section chaos sweep portrait flow reference export report page frequencies fit hard new list"
+exits 0 help --format json
+commands=$(sed -n 's/^ *{"name": "\([a-z]*\)", "operand": .*/\1/p' $work/out)
+test "$commands" || fails "lists no commands"
 
 exits 0 --help
 narrow

@@ -1,5 +1,6 @@
 /* nevh list: what there is.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "commands.h"
 #include "tool.h"
 #include <stdlib.h>
 #include <string.h>
@@ -116,31 +117,38 @@ static int list_scenes(table *t, const options *o) {
     return status;
 }
 
-int list_command(const options *o) {
-    static const struct {
-        const char *name;
-        int (*list)(table *, const options *);
-    } kinds[] = {{"integrators", list_integrators},
-                 {"gradients", list_gradients},
-                 {"models", list_models},
-                 {"scenes", list_scenes}};
+static int list_all(const options *o) {
+    /* in the order of the operands */
+    static int (*const lists[])(table *, const options *) = {
+        list_integrators, list_gradients, list_models, list_scenes};
     list names = {0};
     page p = {.table = table_new()};
     const char *name = o->operands.count == 2 ? o->operands.item[1] : NULL;
     int status = TOOL_USAGE;
-    size_t i = 0, count = sizeof kinds / sizeof *kinds;
-    for (size_t k = 0; k < count; k++)
-        list_add(&names, kinds[k].name);
-    while (name && i < count && strcmp(name, kinds[i].name) != 0)
+    size_t i = 0;
+    list_split_at(&names, list_command.operands, '|');
+    while (name && i < names.count && strcmp(name, names.item[i]) != 0)
         i++;
     if (!name)
         tool_refuse("nevh list takes one of integrators, gradients, models, "
                     "scenes");
-    else if (i == count)
+    else if (i == names.count)
         tool_unknown("kind", name, &names);
-    else if (!kinds[i].list(p.table, o))
+    else if (!lists[i](p.table, o))
         status = output_page(o, &p, TOOL_OK);
     list_free(&names);
     page_free(&p);
     return status;
 }
+
+const command list_command = {
+    .name = "list",
+    .operand = "WHAT",
+    .operands = "integrators|gradients|models|scenes",
+    .brief = "integrators, gradients, models or scenes",
+    .help = "integrators, gradients, models or scenes",
+    .examples = "list integrators\n"
+                "list scenes",
+    .options = "TABLE all",
+    .run = list_all,
+};

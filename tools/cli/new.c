@@ -1,5 +1,6 @@
 /* nevh new: a scene to start from.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "commands.h"
 #include "tool.h"
 #include <errno.h>
 #include <stdlib.h>
@@ -55,7 +56,7 @@ static int make_file(const options *o, const char *file) {
     return status;
 }
 
-int new_scene(const options *o) {
+static int new_scene(const options *o) {
     if (o->operands.count != 2)
         return tool_refuse("nevh new takes one file to be made: FILE.nevh");
     if (!o->from && o->settings.count)
@@ -66,3 +67,14 @@ int new_scene(const options *o) {
     free(file);
     return status;
 }
+
+const command new_command = {
+    .name = "new",
+    .operand = "FILE",
+    .brief = "a commented scene to edit",
+    .help = "makes a commented scene, FILE.nevh",
+    .examples = "new mine.nevh\n"
+                "new moon.nevh --from pendulum --set g=1.6",
+    .options = "with without set from allow-code quiet",
+    .run = new_scene,
+};

@@ -81,10 +81,9 @@ static void outputs_add(outputs *all, const char *option, const char *file) {
 static const char *ending_beside(const options *o, const char *file) {
     const char *name = o->operands.count ? o->operands.item[0] : "";
     const char *ending = strrchr(file, '.');
-    if (strcmp(name, command_name(FOR_RUN)) == 0)
+    if (strcmp(name, "run") == 0)
         return STATE_ENDING;
-    if (strcmp(name, command_name(FOR_SWEEP)) == 0 && ending &&
-        strcmp(ending, ".npy") == 0)
+    if (strcmp(name, "sweep") == 0 && ending && strcmp(ending, ".npy") == 0)
         return ARRAY_TEXT_ENDING;
     return NULL;
 }

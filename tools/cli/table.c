@@ -59,6 +59,14 @@ void table_columns(table *t, const char *const titles[], size_t count) {
         table_column(t, titles[i]);
 }
 
+void table_titles(table *t, const char *titles) {
+    list each = {0};
+    list_split(&each, titles);
+    for (size_t i = 0; i < each.count; i++)
+        table_column(t, each.item[i]);
+    list_free(&each);
+}
+
 void table_text(table *t, const char *text) {
     add(t, text ? TABLE_TEXT : TABLE_EMPTY, text ? text : "");
 }
@@ -359,7 +367,7 @@ static size_t character_bytes(const char *text) {
 }
 
 /* What is no UTF-8, as names of files may be, is shown as U+FFFD. */
-static void print_string(const char *text, FILE *f) {
+void json_string(const char *text, FILE *f) {
     fputc('"', f);
     while (*text) {
         size_t bytes = character_bytes(text);
@@ -377,7 +385,7 @@ static void print_string(const char *text, FILE *f) {
 
 static void print_value(const table *t, size_t i, FILE *f) {
     if (t->kind[i] == TABLE_TEXT)
-        print_string(t->cell.item[i], f);
+        json_string(t->cell.item[i], f);
     else
         fputs(t->kind[i] == TABLE_NUMBER ? t->cell.item[i] : "null", f);
 }
@@ -388,7 +396,7 @@ static void print_rows(const table *t, FILE *f) {
     for (size_t i = 0; i < t->cell.count; i++) {
         fputs(i % columns ? ", " : i ? ",\n    {" : "\n    {", f);
         char *title = joined_title(t->title.item[i % columns]);
-        print_string(title, f);
+        json_string(title, f);
         free(title);
         fputs(": ", f);
         print_value(t, i, f);
@@ -401,7 +409,7 @@ static void print_strings(const char *name, const list *l, FILE *f) {
     fprintf(f, "  \"%s\": [", name);
     for (size_t i = 0; i < l->count; i++) {
         fputs(i ? ",\n    " : "\n    ", f);
-        print_string(l->item[i], f);
+        json_string(l->item[i], f);
     }
     fputs("\n  ]", f);
 }

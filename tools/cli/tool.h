@@ -1,27 +1,10 @@
 /* nevh: what the parts of the command share.
 
-   nevh.c calls one function a command, which is given the options:
+   commands.h lists the commands.  Each is a `command` below, at the end of the
+   file that implements it: its name, help, options, columns and function, from
+   which nevh.c, help, completion and the page for man are made.
 
-       compare     compare.c    rows of row.h, a run each
-       run         run.c        an orbit of trajectory.h, line by line
-       section     section.c
-       sweep       sweep.c
-       flow        flow.c, flow_shape.c
-       portrait    portrait.c, portrait_levels.c
-       reference   reference.c
-       cost        cost.c       studies of study.h: rows at many steps
-       recommend   recommend.c  the same
-       gradients   gradients.c
-       chaos       chaos.c
-       fit         fit_command.c, fit_orbit.c, fit_solve.c
-       check       check.c      pace.h: a trial run
-       effects     effects.c, impact.c
-       hard        hard.c
-       report      report.c     other commands' pages and plots as HTML
-       page        live_page.c  a scene put into web/kit.html
-       new, list   new.c, list.c
-
-   All but the last four begin with a plan (plan.h): scene, options and
+   Commands of scenes begin with a plan (plan.h): scene, options and
    defaults made into what is to be run.  Most end with a page: notes, a table
    (table.c), words.  Those that draw fill a plot (plot.h), which gnuplot
    draws.  FILE_private.h is shared by the files that are named FILE_*.c.
@@ -47,9 +30,11 @@ typedef struct {
 void list_add(list *, const char *text); /* a copy */
 __attribute__((format(printf, 2, 3))) void list_print(list *,
                                                       const char *format, ...);
-void list_split(list *, const char *text); /* at commas */
+void list_split(list *, const char *text); /* at commas, */
+void list_split_at(list *, const char *text, char mark);
 bool list_has(const list *, const char *text);
-char *list_joined(const list *); /* with commas */
+char *list_joined(const list *);                     /* with commas */
+char *list_sentence(const list *, const char *last); /* "a, b or c" */
 void list_free(list *);
 void *tool_allocate(size_t count, size_t size);        /* zeros */
 void *tool_enlarge(void *, size_t count, size_t size); /* as realloc */
@@ -136,6 +121,9 @@ double tool_number(double);
 __attribute__((format(printf, 1, 2))) char *text_print(const char *format, ...);
 /* The item that `name` may have been meant for; NULL when none is close. */
 const char *list_closest(const list *, const char *name);
+/* Words of a help text between columns, in lines of 80 characters: the first
+   begins after `used` characters. */
+void help_print(FILE *, int used, int column, const char *text);
 /* "nevh: " and the message on stderr; returns TOOL_USAGE. */
 __attribute__((format(printf, 1, 2))) int tool_refuse(const char *format, ...);
 /* The same for a name that is none of the list: "unknown KIND NAME", and the
@@ -161,6 +149,7 @@ table *table_new(void);
    -\n.  CSV and JSON have it on one line. */
 void table_column(table *, const char *title);
 void table_columns(table *, const char *const titles[], size_t count);
+void table_titles(table *, const char *titles); /* with commas */
 /* The next column and those after it may go below, where they are more than fit
    beside each other. */
 void table_break(table *);
@@ -186,41 +175,10 @@ typedef struct {
     table *table;
 } page;
 void page_free(page *);
+void json_string(const char *text, FILE *);
 
 /* sample.c */
 extern const char scene_sample[];
-
-/* The commands: the function, the constant, and the name.  nevh.c has the help of
-   each; FOR_CHECK is the bit of check in the options that it takes. */
-#define COMMANDS(X)                                                            \
-    X(compare, COMPARE, "compare")                                             \
-    X(check, CHECK, "check")                                                   \
-    X(effects, EFFECTS, "effects")                                             \
-    X(list_command, LIST, "list")                                              \
-    X(run_scene, RUN, "run")                                                   \
-    X(new_scene, NEW, "new")                                                   \
-    X(cost, COST, "cost")                                                      \
-    X(gradients, GRADIENTS, "gradients")                                       \
-    X(recommend, RECOMMEND, "recommend")                                       \
-    X(section, SECTION, "section")                                             \
-    X(hard, HARD, "hard")                                                      \
-    X(sweep, SWEEP, "sweep")                                                   \
-    X(export_scene, EXPORT, "export")                                          \
-    X(flow, FLOW, "flow")                                                      \
-    X(reference_command, REFERENCE, "reference")                               \
-    X(chaos, CHAOS, "chaos")                                                   \
-    X(report, REPORT, "report")                                                \
-    X(portrait, PORTRAIT, "portrait")                                          \
-    X(frequencies_command, FREQUENCIES, "frequencies")                         \
-    X(fit_command, FIT, "fit")                                                 \
-    X(live_page, PAGE, "page")
-
-#define COMMAND_NUMBER(run, id, name) NUMBER_##id,
-#define COMMAND_BIT(run, id, name)    FOR_##id = 1 << NUMBER_##id,
-enum { COMMANDS(COMMAND_NUMBER) COMMAND_COUNT };
-enum { COMMANDS(COMMAND_BIT) FOR_NONE };
-
-const char *command_name(unsigned bit);
 
 /* options.c: the command line. */
 typedef enum { MATCH_SCENE, MATCH_STEPS, MATCH_WORK } matching;
@@ -234,7 +192,8 @@ typedef enum {
     PLOT_ANIMATION
 } plot_kind;
 typedef struct {
-    list operands, settings, integrators, gradients; /* settings: see below */
+    list operands, given;                  /* the names of the options given */
+    list settings, integrators, gradients; /* settings: see below */
     list sections;
     list variants; /* of report: settings, as --set takes them */
     list dt, at;   /* formulas of the scene's parameters */
@@ -248,8 +207,7 @@ typedef struct {
     const char *file, *transform, *resume, *from, *observable, *columns;
     const char *shape; /* of flow; NULL: chosen */
     table_format format;
-    bool formatted; /* --format was given */
-    bool as_html;   /* tables are parts of a report */
+    bool as_html; /* tables are parts of a report */
     bool quiet, portable, all, diagnostics, impact, allow_code, header;
     struct { /* --plot and what belongs to it; NULL: not given */
         const char *file, *script;
@@ -258,13 +216,13 @@ typedef struct {
     } plot;
     struct {
         nevh_native_use use;
-        bool given, no_cache;
+        bool no_cache;
     } native;
     struct { /* of cost and recommend */
         double energy_error, state_error, error;
         double budget; /* seconds; of chaos, too; 0: not given */
         size_t repeats;
-        bool by_state;
+        unsigned by; /* 1: the state */
     } search;
     struct { /* of fit; data: a file of measured points */
         const char *data;
@@ -283,8 +241,53 @@ typedef struct {
     bool retry, join;
     bool no_steps; /* the command takes no dt; it ends with the last of `at` */
     bool help, version;
-    unsigned long long used; /* a bit an option */
 } options;
+
+/* An option.
+   kind    what its argument is; "flag": there is none
+   target  the member of the options that `read` sets
+   group   of options that commands take together, or NULL; ALL: of all commands
+   words   of a choice, with | between them: of an enumeration from `first`
+   most    the largest count, or 0
+   mark    before each item of the settings */
+typedef struct option_row option_row;
+struct option_row {
+    const char *name, *argument, *kind;
+    int (*read)(options *, const option_row *, const char *argument);
+    size_t target;
+    const char *group, *help, *words;
+    unsigned first;
+    size_t most;
+    char letter, mark;
+};
+extern const option_row option_rows[];           /* until one without a name */
+const option_row *option_find(const char *name); /* or NULL */
+bool option_given(const options *, const char *name);
+
+/* A command.
+   operands  the words that the operand may be, with | between them, or NULL
+   brief     a line for the list that nevh prints alone; NULL: not there
+   examples  commands without "nevh ", a line each, that anyone can type:
+             tests/tool/nevh_help.sh runs them
+   options   names of options, and groups of them in capitals, with spaces between
+   columns   of the CSV, with commas between them, before those that a scene or an
+             option adds; NULL: there is no such table
+   draws     the kinds of plot that --plot-kind may name, with | between them
+   more      prints what nevh help COMMAND has after the options; or NULL
+   instead   an option that it could be thought to take, and what to do instead */
+typedef struct {
+    const char *name, *operand, *operands, *brief, *help, *examples, *options;
+    const char *columns, *draws;
+    struct {
+        const char *option, *advice;
+    } instead;
+    void (*more)(FILE *);
+    int (*run)(const options *);
+} command;
+bool command_takes(const command *, const option_row *);
+/* That there is what `options` names; a test asks that of all commands. */
+int command_takes_known(const command *);
+
 /* A setting is '+' or '-' and an effect to switch on or off, or '=' or '@' and an
    assignment to a parameter or of a start, in the order given.
    returns  TOOL_OK or TOOL_USAGE, the message being printed */
@@ -296,16 +299,9 @@ char *shell_line(const options *, const char *run, const char *scene);
 char *shell_word(char *line, const char *word);
 char *shell_option(char *line, const char *name, const char *value);
 char *shell_number(char *line, const char *name, double value);
-/* That all options given are for this command. */
-int options_check(const options *, unsigned which);
 /* What --set and --start gave, a line each. */
 void settings_notes(const options *, list *notes);
 void options_free(options *);
-void options_help(FILE *, unsigned which);
-void outcomes_help(FILE *); /* ensemble/sweep.c: what --outcomes takes */
-/* Words of a help text between columns, in lines of 80 characters: the first
-   begins after `used` characters. */
-void help_print(FILE *, int used, int column, const char *text);
 
 /* output.c: a file that is there when it is whole, or stdout. */
 typedef struct {
@@ -341,8 +337,9 @@ int output_close(output *, int status);
 /* Opens what -o says, prints, closes. */
 int output_page(const options *, const page *, int status);
 void page_print(const page *, const options *, FILE *);
-/* page_html.c */
+/* page_html.c: the page, and text with markup's characters written out. */
 void page_html(const page *, FILE *);
+void html_text(FILE *, const char *);
 
 /* outputs.c */
 /* Of what stands beside an output: the state of nevh run, and what an array of
@@ -379,9 +376,5 @@ char *data_file(const char *name);
 /* The live page without a scene, beside this program or where it was configured
    to be; to be freed.  Whether it is there is not known. */
 char *page_kit(void);
-
-typedef int command(const options *);
-#define COMMAND_FUNCTION(run, id, name) command run;
-COMMANDS(COMMAND_FUNCTION)
 
 #endif

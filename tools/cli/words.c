@@ -71,10 +71,11 @@ void list_print(list *l, const char *format, ...) {
     va_end(arguments);
 }
 
-void list_split(list *l, const char *text) {
+void list_split_at(list *l, const char *text, char mark) {
+    const char end[] = {mark, '\0'};
     for (;;) {
         text += strspn(text, " ");
-        size_t length = strcspn(text, ",");
+        size_t length = strcspn(text, end);
         const char *next = text + length;
         while (length && text[length - 1] == ' ')
             length--;
@@ -83,6 +84,10 @@ void list_split(list *l, const char *text) {
             return;
         text = next + 1;
     }
+}
+
+void list_split(list *l, const char *text) {
+    list_split_at(l, text, ',');
 }
 
 bool list_has(const list *l, const char *text) {
@@ -99,6 +104,18 @@ char *list_joined(const list *l) {
     char *text = tool_allocate(bytes, 1), *end = text;
     for (size_t i = 0; i < l->count; i++)
         end += sprintf(end, "%s%s", i ? ", " : "", l->item[i]);
+    return text;
+}
+
+char *list_sentence(const list *l, const char *last) {
+    char *text = text_print("%s", l->count ? l->item[0] : "");
+    for (size_t i = 1; i < l->count; i++) {
+        char *longer = i + 1 < l->count
+                           ? text_print("%s, %s", text, l->item[i])
+                           : text_print("%s %s %s", text, last, l->item[i]);
+        free(text);
+        text = longer;
+    }
     return text;
 }
 
@@ -169,4 +186,22 @@ int tool_unknown(const char *kind, const char *name, const list *known) {
     tool_refuse("unknown %s %s; there are %s", kind, name, all);
     free(all);
     return TOOL_USAGE;
+}
+
+void help_print(FILE *f, int used, int column, const char *text) {
+    enum { WIDTH = 80 };
+    if (column > 0 && used + 2 > column) {
+        fputc('\n', f);
+        used = 0;
+    }
+    for (; *text; used = 0) {
+        size_t end = strlen(text);
+        if (end > (size_t)(WIDTH - column))
+            for (end = (size_t)(WIDTH - column); end && text[end] != ' ';)
+                end--;
+        end = end ? end : strcspn(text, " ");
+        fprintf(f, "%*s%.*s\n", column - used, "", (int)end, text);
+        text += end;
+        text += strspn(text, " ");
+    }
 }

@@ -1,6 +1,7 @@
 /* nevh compare: a table of energy errors, a row an integrator and dt.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "plot/envelope.h"
+#include "cli/commands.h"
+#include "experiment/envelope.h"
 #include "experiment/pace.h"
 #include "plot/order_plot.h"
 #include <math.h>
@@ -323,7 +324,7 @@ static int compare_plan(const options *o, plan *p) {
     return status;
 }
 
-int compare(const options *o) {
+static int compare(const options *o) {
     plan p;
     int status = plan_make(&p, o);
     if (!status)
@@ -331,3 +332,19 @@ int compare(const options *o) {
     plan_free(&p);
     return status;
 }
+
+const command compare_command = {
+    .name = "compare",
+    .operand = "SCENE",
+    .brief = "energy error, orbit error and cost of each integrator",
+    .help =
+        "one row for each integrator and dt: energy error, orbit error, cost; then a verdict",
+    .examples =
+        "compare pendulum\n"
+        "compare double-pendulum --integrators verlet,gauss4,rk4 --dt 0.01 --t-end 20",
+    .options =
+        "SCENE STEPS NATIVE TABLE PLOT tolerance observable repeat transform match diagnostics plot-kind",
+    .draws = "order",
+    .columns = RECORD_COLUMNS,
+    .run = compare,
+};

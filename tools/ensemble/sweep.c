@@ -1,5 +1,6 @@
 /* nevh sweep: a row for each member of an ensemble.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
 #include "sweep_private.h"
 #include <inttypes.h>
 #include <math.h>
@@ -90,7 +91,7 @@ static void print_head(sweep_job *j) {
     FILE *f = j->out.stream;
     for (size_t i = 0; !j->options->quiet && i < j->notes.count; i++)
         fprintf(f, "# %s\n", j->notes.item[i]);
-    fputs("member,status", f);
+    fputs(sweep_command.columns, f);
     for (size_t k = 0; k < nevh_sweep_columns(j->sweep); k++) {
         fputc(',', f);
         print_field(f, nevh_sweep_column(j->sweep, k));
@@ -240,7 +241,7 @@ static int run(sweep_job *j) {
 
 /* What belongs together. */
 static int check_options(const options *o) {
-    if (o->formatted && o->format != FORMAT_CSV)
+    if (option_given(o, "format") && o->format != FORMAT_CSV)
         return tool_refuse(
             "nevh sweep writes CSV, or with -o FILE.npy an array "
             "of NumPy");
@@ -265,7 +266,7 @@ static int check_options(const options *o) {
 }
 
 /* Outcomes, as they are written. */
-void outcomes_help(FILE *f) {
+static void print_outcomes(FILE *f) {
     static const char *const argument[] = {"", "(F)", "(A > B)", ""};
     fputs("\nOutcomes:\n", f);
     for (size_t k = 0; nevh_outcomes()[k]; k++) {
@@ -275,7 +276,7 @@ void outcomes_help(FILE *f) {
     }
 }
 
-int sweep(const options *o) {
+static int sweep(const options *o) {
     sweep_job j = {.options = o};
     int status = check_options(o);
     if (status)
@@ -302,3 +303,19 @@ int sweep(const options *o) {
     ranks_end(&j.ranks);
     return status;
 }
+
+const command sweep_command = {
+    .name = "sweep",
+    .operand = "SCENE",
+    .brief = "many orbits, a row of outcomes for each",
+    .help =
+        "many orbits: a row for each member of the ensemble, with outcomes, as CSV or an array of NumPy (-o FILE.npy)",
+    .examples =
+        "sweep pendulum --t-end 50 --vary 'phi = range(0.1, 3, 20)' --outcomes period,energy_error\n"
+        "sweep double-pendulum --t-end 20 --vary 'phi1 = range(-3, 3, 20)' --vary 'phi2 = range(-3, 3, 20)' --outcomes 'first(abs(phi2) > pi)' --picture flips.svg",
+    .options =
+        "SCENE STEPS NATIVE TABLE tolerance picture resume vary data outcomes retry stop-after task join threads width transform keep-plot-script",
+    .columns = "member,status",
+    .more = print_outcomes,
+    .run = sweep,
+};

@@ -152,7 +152,7 @@ static void take_settings(plan *p, const options *o) {
         o->gradient_step > 0 ? o->gradient_step : p->run->gradient_step;
     p->gradient_steps = o->gradient_step > 0 ? NULL : p->run->gradient_steps;
     p->portable = o->portable;
-    p->native = o->native.given ? o->native.use : p->run->native;
+    p->native = option_given(o, "native") ? o->native.use : p->run->native;
     p->no_cache = o->native.no_cache;
     p->repeats = o->search.repeats;
     p->diagnostics = o->diagnostics;

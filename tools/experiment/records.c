@@ -42,29 +42,8 @@ static void add_record(table *t, const plan *p, const row *r) {
 }
 
 table *records(const plan *p, const row rows[], size_t count) {
-    static const char *const names[] = {"scene",
-                                        "integrator",
-                                        "order",
-                                        "symplectic",
-                                        "gradient",
-                                        "dt",
-                                        "steps",
-                                        "status",
-                                        "max_energy_error",
-                                        "rms_energy_error",
-                                        "final_energy_error",
-                                        "energy_drift",
-                                        "state_error",
-                                        "hamiltonian_evals",
-                                        "gradient_evals",
-                                        "sweeps",
-                                        "seconds",
-                                        "verdict",
-                                        "observed_order",
-                                        "seconds_spread"};
     table *t = table_new();
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        table_column(t, names[i]);
+    table_titles(t, RECORD_COLUMNS);
     diagnostics_columns(t, p, false);
     if (p->observable)
         table_column(t, "observable_error");

@@ -1,6 +1,6 @@
 /* nevh: one run of compare, watched.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "plot/envelope.h"
+#include "envelope.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -89,6 +89,12 @@ void rows_time(const plan *, row *const rows[], size_t count, size_t rounds,
                bool whole);
 /* stop.c: of the rows that stopped, how many did, when. */
 void stop_notes(const plan *, const row rows[], size_t count, list *notes);
+/* The columns that all records begin with. */
+#define RECORD_COLUMNS                                                         \
+    "scene,integrator,order,symplectic,gradient,dt,steps,status,"              \
+    "max_energy_error,rms_energy_error,final_energy_error,"                    \
+    "energy_drift,state_error,hamiltonian_evals,gradient_evals,"               \
+    "sweeps,seconds,verdict,observed_order,seconds_spread"
 /* records.c: rows as the columns of CSV and JSON. */
 table *records(const plan *, const row rows[], size_t count);
 /* row_notes.c: observed_order, of rows with the same scheme beside each other;

@@ -1,5 +1,6 @@
 /* nevh fit: parameters and starts from measured points.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
 #include "fit_private.h"
 #include "plot/plot.h"
 #include <math.h>
@@ -117,23 +118,10 @@ static bool sigma_known(const job *j) {
 static void add_columns(const job *j, table *t, bool is_table) {
     static const char *const shown[] = {"parameter", "value", "error",
                                         "95 % from", "to",    "started at"};
-    static const char *const csv[] = {"scene",
-                                      "integrator",
-                                      "dt",
-                                      "parameter",
-                                      "start",
-                                      "value",
-                                      "error",
-                                      "low",
-                                      "high",
-                                      "residuals",
-                                      "degrees_of_freedom",
-                                      "chi_square",
-                                      "reduced_chi_square"};
     if (is_table)
         table_columns(t, shown, sizeof shown / sizeof *shown);
     else
-        table_columns(t, csv, sizeof csv / sizeof *csv);
+        table_titles(t, fit_command.columns);
     for (size_t i = 0; i < j->fit.count; i++) {
         char *title = text_print(is_table ? "corr.\n%s" : "correlation_%s",
                                  j->fit.item[i].name);
@@ -391,7 +379,7 @@ static void clear(job *j) {
     plan_free(&j->plan);
 }
 
-int fit_command(const options *o) {
+static int fit(const options *o) {
     job j = {0};
     int status = begin(&j, o);
     if (!status && fit_solve(&j.fit))
@@ -401,3 +389,18 @@ int fit_command(const options *o) {
     clear(&j);
     return status;
 }
+
+const command fit_command = {
+    .name = "fit",
+    .operand = "SCENE",
+    .brief = "parameters and starts from measured points",
+    .help =
+        "parameters and starts from measured points: least squares, with errors and correlations",
+    .examples = "fit pendulum-filmed --data pendulum-filmed.csv --vary g\n"
+                "fit pendulum-filmed --data pendulum-filmed.csv --vary g,phi",
+    .options = "SCENE STEPS TABLE tolerance vary data sigma columns",
+    .columns = "scene,integrator,dt,parameter,start,value,error,low,"
+               "high,residuals,degrees_of_freedom,chi_square,"
+               "reduced_chi_square",
+    .run = fit,
+};

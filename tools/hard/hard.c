@@ -1,5 +1,6 @@
 /* nevh hard: every hard case with every scheme and gradient, and the verdicts.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
 #include "hard_private.h"
 #include <math.h>
 #include <stdlib.h>
@@ -157,11 +158,6 @@ static int run_all(suite *all, const options *o) {
     return status;
 }
 
-static void columns(table *t, const char *const names[], size_t count) {
-    for (size_t i = 0; i < count; i++)
-        table_column(t, names[i]);
-}
-
 static char *asked(const case_results *c) {
     return text_print("dt = %.4g, t = %.4g ... %.6g", c->dt, c->t, c->t_end);
 }
@@ -186,13 +182,8 @@ static void add_record(table *t, const case_results *c, const hard_result *r) {
 }
 
 static table *runs(const suite *all) {
-    static const char *const names[] = {
-        "case",    "integrator",   "gradient",    "asked",
-        "h_omega", "stable_below", "steps",       "max_energy_error",
-        "bound",   "state_error",  "state_bound", "happened",
-        "verdict"};
     table *t = table_new();
-    columns(t, names, sizeof names / sizeof *names);
+    table_titles(t, hard_command.columns);
     for (size_t i = 0; i < all->n_cases; i++)
         for (size_t k = 0; k < all->cases[i].count; k++)
             add_record(t, &all->cases[i], &all->cases[i].result[k]);
@@ -246,7 +237,7 @@ static table *shown(const suite *all) {
         "case", "asked",       "omega\ndt", "verdict",
         "rows", "error\nfrom", "\nto",      "the worst of them"};
     table *t = table_new();
-    columns(t, names, sizeof names / sizeof *names);
+    table_columns(t, names, sizeof names / sizeof *names);
     table_below(t);
     for (size_t i = 0; i < all->n_cases; i++) {
         table_group(t);
@@ -305,7 +296,7 @@ static void suite_free(suite *all) {
     list_free(&all->gradients);
 }
 
-int hard(const options *o) {
+static int hard(const options *o) {
     suite all = {0};
     int status = check_names(o);
     if (!status)
@@ -321,3 +312,17 @@ int hard(const options *o) {
     suite_free(&all);
     return status;
 }
+
+const command hard_command = {
+    .name = "hard",
+    .operand = "",
+    .brief = "every integrator on hard cases",
+    .help = "every integrator on cases that are hard to integrate",
+    .examples = "hard --integrators verlet\n"
+                "hard --integrators verlet,rk4 --all",
+    .options = "TABLE integrators gradient all",
+    .columns = "case,integrator,gradient,asked,h_omega,stable_below,steps,"
+               "max_energy_error,bound,state_error,state_bound,happened,"
+               "verdict",
+    .run = hard,
+};

@@ -1,5 +1,6 @@
 /* nevh chaos: is the orbit of a scene chaotic, and on which time scale.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
 #include "experiment/plan.h"
 #include <math.h>
 #include <nevh/chaos.h>
@@ -358,15 +359,12 @@ static int check_numbers(job *j) {
 }
 
 static int chaos_of(const options *o, const plan *p) {
-    static const char *const columns[] = {
-        "scene", "integrator", "dt",   "t",     "exponent",
-        "value", "error",      "sali", "megno", "verdict"};
     job j = {.plan = p,
              .options = o,
              .result = {.table = table_new()},
              .started = cpu_seconds()};
     int status = check_numbers(&j);
-    table_columns(j.result.table, columns, sizeof columns / sizeof *columns);
+    table_titles(j.result.table, chaos_command.columns);
     if (!status) {
         plan_notes(p, &j.result.before);
         settings_notes(o, &j.result.before);
@@ -378,7 +376,7 @@ static int chaos_of(const options *o, const plan *p) {
     return status;
 }
 
-int chaos(const options *o) {
+static int chaos(const options *o) {
     plan p = {0};
     int status = plan_make(&p, o);
     if (!status && o->file)
@@ -388,3 +386,17 @@ int chaos(const options *o) {
     plan_free(&p);
     return status;
 }
+
+const command chaos_command = {
+    .name = "chaos",
+    .operand = "SCENE",
+    .brief = "chaotic or regular, with Lyapunov exponents",
+    .help =
+        "whether the orbit is chaotic: Lyapunov exponents with errors, alignment indices, MEGNO",
+    .examples = "chaos henon-heiles --t-end 1000\n"
+                "chaos double-pendulum --t-end 50 --exponents all",
+    .options = "SCENE STEPS TABLE budget samples exponents starts gali",
+    .columns = "scene,integrator,dt,t,exponent,value,error,sali,megno,"
+               "verdict",
+    .run = chaos,
+};

@@ -1,5 +1,6 @@
 /* nevh check: what can be said of a scene before it is run.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
 #include "experiment/conserved.h"
 #include "experiment/pace.h"
 #include <math.h>
@@ -213,12 +214,9 @@ static void tell_others(const fitting *f, list *words) {
 /* Reasons are a column where programs read, and below the table where people
    do. */
 static void add_schemes(fitting *f, page *result) {
-    static const char *const columns[] = {"integrator", "order", "fits", "why"};
-    for (size_t i = 0; i < (f->why ? 4 : 3); i++)
-        table_column(f->table, columns[i]);
-    table_column(f->table, f->why ? "stable_below" : "stable\nbelow");
-    table_column(f->table, f->why ? "h_omega" : "omega dt");
-    table_column(f->table, f->why ? "prediction" : "");
+    table_titles(f->table, f->why ? check_command.columns
+                                  : "integrator,order,fits,stable\nbelow,"
+                                    "omega dt,");
     for (size_t i = 0; nevh_integrators()[i]; i++)
         add_scheme(f, nevh_integrators()[i]);
     if (!f->why)
@@ -253,7 +251,7 @@ static int check_plan(const options *o, const plan *p) {
     return status;
 }
 
-int check(const options *o) {
+static int check(const options *o) {
     plan p;
     int status = plan_make(&p, o);
     if (!status && o->file)
@@ -263,3 +261,17 @@ int check(const options *o) {
     plan_free(&p);
     return status;
 }
+
+const command check_command = {
+    .name = "check",
+    .operand = "SCENE",
+    .brief = "mistakes in the scene, properties of H, what fits",
+    .help =
+        "mistakes in the scene file, properties of H, and which integrators fit",
+    .examples = "check double-pendulum --t-end 20\n"
+                "check pendulum --all",
+    .options = "SCENE STEPS TABLE all",
+    .columns = "integrator,order,fits,why,stable_below,h_omega,"
+               "prediction",
+    .run = check,
+};

@@ -1,5 +1,6 @@
 /* nevh effects: what each effect reads and costs.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
 #include "plot/plot.h"
 #include "experiment/plan.h"
 #include <math.h>
@@ -201,12 +202,8 @@ static void put_row(table *t, const char *name, const price *c,
 }
 
 static void fill(const plan *p, const price prices[], size_t count, table *t) {
-    static const char *const columns[] = {
-        "effect",      "state", "reads",   "friction",     "instances",
-        "evaluations", "share", "ns each", "share of time"};
     price sum = {0};
-    for (size_t i = 0; i < sizeof columns / sizeof *columns; i++)
-        table_column(t, columns[i]);
+    table_titles(t, effects_command.columns);
     for (size_t i = 0; i < count; i++) {
         sum.values += prices[i].values;
         if (prices[i].seconds > 0)
@@ -234,7 +231,7 @@ static int effects_of(const options *o, plan *p) {
     return status;
 }
 
-int effects(const options *o) {
+static int effects(const options *o) {
     plan p;
     if (plot_wanted(o) && !o->impact)
         return tool_refuse("nevh effects draws with --impact --plot %s",
@@ -247,3 +244,17 @@ int effects(const options *o) {
     plan_free(&p);
     return status;
 }
+
+const command effects_command = {
+    .name = "effects",
+    .operand = "SCENE",
+    .brief = "the effects, what each reads, changes and costs",
+    .help =
+        "each effect: on or off, what it reads, evaluations, time; with --impact what it changes",
+    .examples = "effects elastic-pendulum\n"
+                "effects damped-driven-pendulum --t-end 20 --impact",
+    .options = "SCENE STEPS TABLE PLOT impact",
+    .columns = "effect,state,reads,friction,instances,evaluations,"
+               "share,ns each,share of time",
+    .run = effects,
+};

@@ -1,5 +1,6 @@
 /* nevh export: the steps of one integrator as a C program.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
 #include "experiment/plan.h"
 #include <math.h>
 #include <stdlib.h>
@@ -36,7 +37,7 @@ static int export_plan(const options *o, const plan *p) {
     return status;
 }
 
-int export_scene(const options *o) {
+static int export_scene(const options *o) {
     plan p = {0};
     int status = plan_make(&p, o);
     p.portable = true; /* differences, too, are found from libm's values */
@@ -48,3 +49,15 @@ int export_scene(const options *o) {
     plan_free(&p);
     return status;
 }
+
+const command export_command = {
+    .name = "export",
+    .operand = "SCENE",
+    .brief = "the steps as a C program",
+    .help =
+        "the steps of one integrator as a C program that needs nothing else",
+    .examples = "export pendulum -o pendulum.c\n"
+                "export kepler --integrators gauss6 --header -o kepler.h",
+    .options = "SCENE STEPS tolerance every header output",
+    .run = export_scene,
+};

@@ -1,5 +1,6 @@
 /* nevh flow: what integrators do to the area of a shape of starts.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
 #include "flow.h"
 #include "plot/plot.h"
 #include <math.h>
@@ -175,11 +176,8 @@ static void add_records(table *t, const flow_job *j) {
 }
 
 static table *records(const flow_job *j) {
-    static const char *const columns[] = {
-        "scene", "integrator", "symplectic", "dt",     "t",
-        "area",  "ratio",      "points",     "status", "error"};
     table *t = table_new();
-    table_columns(t, columns, sizeof columns / sizeof *columns);
+    table_titles(t, flow_command.columns);
     add_records(t, j);
     return t;
 }
@@ -334,7 +332,7 @@ static void forget(flow_job *j) {
     plan_free(&j->plan);
 }
 
-int flow(const options *o) {
+static int flow(const options *o) {
     flow_job j = {0};
     int status = plan_make(&j.plan, o);
     if (!status)
@@ -350,3 +348,21 @@ int flow(const options *o) {
     forget(&j);
     return status;
 }
+
+const command flow_command = {
+    .name = "flow",
+    .operand = "SCENE",
+    .brief = "the area of a set of starts, carried along",
+    .help =
+        "the area of a disc, a rectangle or Arnold's cat of starts against time, for each integrator",
+    .examples =
+        "flow pendulum --t-end 5\n"
+        "flow pendulum --t-end 5 --shape 'disc(phi = 1, p_phi = 0, 0.3)' --plot flow.svg",
+    .options = "SCENE STEPS TABLE PLOT tolerance samples at shape",
+    .instead = {"vary",
+                "its starts are those of --shape; --set sets a parameter, for "
+                "a run for each value"},
+    .columns = "scene,integrator,symplectic,dt,t,area,ratio,points,"
+               "status,error",
+    .run = flow,
+};

@@ -2,6 +2,7 @@
 
    Those of a run at half the step tell how much of a frequency is the scheme's.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
 #include "experiment/plan.h"
 #include <math.h>
 #include <nevh/frequencies.h>
@@ -387,9 +388,6 @@ static int run_and_analyse(job *j, const options *o, const char *integrator) {
 }
 
 static void make_table(job *j, const options *o) {
-    static const char *const csv[] = {
-        "scene",     "integrator", "observable", "rank",   "frequency", "error",
-        "amplitude", "phase",      "drift",      "period", "resolution"};
     static const char *const shown[] = {
         "integrator", "observable", "rank",   "frequency", "error",
         "resolution", "drift",      "period", "amplitude", "phase"};
@@ -397,7 +395,7 @@ static void make_table(job *j, const options *o) {
     if (o->format == FORMAT_TABLE)
         table_columns(j->table, shown, sizeof shown / sizeof *shown);
     else
-        table_columns(j->table, csv, sizeof csv / sizeof *csv);
+        table_titles(j->table, frequencies_command.columns);
 }
 
 static void note(const job *j, const options *o, list *notes) {
@@ -430,7 +428,7 @@ static int analyse_all(job *j, const options *o) {
     return status;
 }
 
-int frequencies_command(const options *o) {
+static int frequencies(const options *o) {
     job j = {.worst = TOOL_OK};
     int status = plan_make(&j.plan, o);
     if (!status)
@@ -445,3 +443,17 @@ int frequencies_command(const options *o) {
     plan_free(&j.plan);
     return status;
 }
+
+const command frequencies_command = {
+    .name = "frequencies",
+    .operand = "SCENE",
+    .brief = "the frequencies in the orbit",
+    .help =
+        "the frequencies in the orbit by each integrator, with amplitudes, errors and drift",
+    .examples = "frequencies pendulum\n"
+                "frequencies coupled-pendulums --integrators gauss6",
+    .options = "SCENE STEPS TABLE tolerance observable",
+    .columns = "scene,integrator,observable,rank,frequency,error,"
+               "amplitude,phase,drift,period,resolution",
+    .run = frequencies,
+};

@@ -1,5 +1,6 @@
 /* nevh portrait: orbits by each integrator over level curves of H.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
 #include "portrait.h"
 #include "fit/measured.h"
 #include <math.h>
@@ -373,7 +374,7 @@ static int draw(job *j, const options *o) {
     return drawn ? drawn : status;
 }
 
-int portrait(const options *o) {
+static int portrait(const options *o) {
     job j = {0};
     if (o->file)
         return tool_refuse("nevh portrait writes no rows: give the picture's "
@@ -402,3 +403,16 @@ int portrait(const options *o) {
     plan_free(&j.plan);
     return status;
 }
+
+const command portrait_command = {
+    .name = "portrait",
+    .operand = "SCENE",
+    .brief = "orbits over level curves of H, a panel a scheme",
+    .help =
+        "draws the orbits of the ensemble by each integrator, over level curves of H or in a plane of section",
+    .examples =
+        "portrait pendulum --t-end 20 --vary 'phi = range(0.5, 3, 6)' --plot portrait.svg\n"
+        "portrait pendulum --t-end 20 --integrators verlet,rk4 --dt 0.3 --plot portrait.svg",
+    .options = "SCENE STEPS NATIVE PLOT tolerance vary data section quiet",
+    .run = portrait,
+};

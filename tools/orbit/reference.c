@@ -1,5 +1,6 @@
 /* nevh reference: states to digits that are certain.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
 #include "experiment/plan.h"
 #include <math.h>
 #include <stdlib.h>
@@ -212,8 +213,6 @@ static int start_orbit(const options *o, job *j) {
 }
 
 static int reference_of(const options *o, const plan *p) {
-    static const char *const columns[] = {"t", "variable", "value", "digits",
-                                          "error"};
     double start = p->run->t_start, now = cpu_seconds();
     job j = {.plan = p,
              .digits = o->digits ? o->digits : usual_digits,
@@ -230,7 +229,7 @@ static int reference_of(const options *o, const plan *p) {
     j.part = 0x1p-60 * fmin(j.end - start, 1e18);
     if (!status)
         status = start_orbit(o, &j);
-    table_columns(result.table, columns, sizeof columns / sizeof *columns);
+    table_titles(result.table, reference_command.columns);
     if (!status)
         status = put_states(&j, result.table);
     if (!status) {
@@ -244,7 +243,7 @@ static int reference_of(const options *o, const plan *p) {
     return status;
 }
 
-int reference_command(const options *o) {
+static int reference(const options *o) {
     plan p = {0};
     options untimed = *o;
     untimed.no_steps = true;
@@ -256,3 +255,15 @@ int reference_command(const options *o) {
     plan_free(&p);
     return status;
 }
+
+const command reference_command = {
+    .name = "reference",
+    .operand = "SCENE",
+    .brief = "the state to digits that are certain",
+    .help = "the state at the end, or at given times, with certain digits",
+    .examples = "reference pendulum --at 1,10\n"
+                "reference henon-heiles --t-end 20 --digits 20",
+    .options = "SCENE TABLE at digits stop-after",
+    .columns = "t,variable,value,digits,error",
+    .run = reference,
+};

@@ -1,5 +1,6 @@
 /* nevh run: the trajectory.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
 #include "config.h"
 #include "fit/measured.h"
 #include "plot/plot.h"
@@ -93,7 +94,7 @@ static int choose_integrator(job *j) {
 }
 
 static int check_options(const options *o) {
-    bool other = o->formatted && o->format != FORMAT_CSV;
+    bool other = option_given(o, "format") && o->format != FORMAT_CSV;
     if (o->resume && o->file)
         return tool_refuse("--resume names the file: leave -o out");
     if (o->resume && other)
@@ -287,7 +288,7 @@ static int write_page(job *j, page *result) {
 static int write_rows(job *j) {
     const options *o = j->options;
     page result = {0};
-    bool pages = o->formatted && o->format != FORMAT_CSV;
+    bool pages = option_given(o, "format") && o->format != FORMAT_CSV;
     j->trajectory =
         trajectory_new(&j->plan, j->integrator, j->stepper, &j->rows,
                        (sink){.lines = &j->lines,
@@ -316,7 +317,7 @@ static int run_job(job *j) {
     return drawn > status ? drawn : status;
 }
 
-int run_scene(const options *o) {
+static int run_scene(const options *o) {
     job j = {.options = o, .lines.file = -1};
     int status = check_options(o);
     if (!status)
@@ -340,3 +341,18 @@ int run_scene(const options *o) {
     free(j.settings);
     return status;
 }
+
+const command run_command = {
+    .name = "run",
+    .operand = "SCENE",
+    .brief = "the trajectory, as CSV or as a picture",
+    .help =
+        "the trajectory as CSV: t, coordinates, momenta, observables, energy",
+    .examples = "run pendulum --t-end 10 --samples 11\n"
+                "run kepler --t-end 20 --plot kepler.svg",
+    .options =
+        "SCENE STEPS NATIVE TABLE PLOT tolerance every samples at resume data transform plot-kind columns",
+    .draws = "phase|energy|configuration|time|animation",
+    .columns = "t",
+    .run = run_scene,
+};

@@ -221,9 +221,9 @@ static int check_kind(const options *o, const plan *p) {
 int run_plot_check(const options *o, const plan *p) {
     options as = *o;
     as.file = o->resume ? o->resume : o->file;
-    as.format = plot_replaces_rows(o) ? FORMAT_TABLE
-                : o->formatted        ? o->format
-                                      : FORMAT_CSV;
+    as.format = plot_replaces_rows(o)       ? FORMAT_TABLE
+                : option_given(o, "format") ? o->format
+                                            : FORMAT_CSV;
     return check_kind(o, p) ? TOOL_USAGE : plot_check(&as);
 }
 

@@ -1,5 +1,6 @@
 /* nevh section: points of Poincare and stroboscopic sections.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
 #include "ensemble/members.h"
 #include "portrait.h"
 #include <float.h>
@@ -379,14 +380,13 @@ static int draw(const job *j, const options *o, int status) {
 
 static options with_format(const options *o) {
     options as = *o;
-    as.format = o->formatted            ? o->format
-                : plot_replaces_rows(o) ? FORMAT_TABLE
-                                        : FORMAT_CSV;
+    as.format = option_given(o, "format") ? o->format
+                : plot_replaces_rows(o)   ? FORMAT_TABLE
+                                          : FORMAT_CSV;
     return as;
 }
 
 static int print(const job *j, const options *o, int status) {
-    static const char *const columns[] = {"section", "t", "direction"};
     page result = {.table = table_new()};
     options as = with_format(o);
     list items = {0};
@@ -394,8 +394,7 @@ static int print(const job *j, const options *o, int status) {
         table_round(result.table);
     if (!(o->quiet && as.format == FORMAT_TABLE))
         note(j, o, &result.before);
-    for (size_t i = 0; i < 3; i++)
-        table_column(result.table, columns[i]);
+    table_titles(result.table, section_command.columns);
     list_items(j, &items);
     for (size_t i = 0; i < items.count; i++)
         table_column(result.table, items.item[i]);
@@ -437,7 +436,7 @@ int section_panel(plot **to, const plan *p, const options *o,
     return status;
 }
 
-int section(const options *o) {
+static int section(const options *o) {
     plan p;
     job j = {.stopped = NAN};
     nevh_stepper *s = NULL;
@@ -458,3 +457,16 @@ int section(const options *o) {
     plan_free(&p);
     return status;
 }
+
+const command section_command = {
+    .name = "section",
+    .operand = "SCENE",
+    .brief = "points of Poincare sections",
+    .help = "points of Poincare and stroboscopic sections, as CSV",
+    .examples = "section henon-heiles --t-end 200\n"
+                "section henon-heiles --t-end 200 --plot section.svg",
+    .options =
+        "SCENE STEPS NATIVE TABLE PLOT tolerance vary transform section after",
+    .columns = "section,t,direction",
+    .run = section,
+};

@@ -3,7 +3,7 @@
 #ifndef NEVH_ENERGY_PLOT_H
 #define NEVH_ENERGY_PLOT_H
 
-#include "envelope.h"
+#include "experiment/envelope.h"
 #include "plot.h"
 
 /* A plot, or one more panel. */

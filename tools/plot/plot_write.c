@@ -77,7 +77,8 @@ bool plot_goes_first(const options *o) {
 }
 
 bool plot_replaces_rows(const options *o) {
-    return plot_wanted(o) && !o->file && !o->resume && !o->formatted;
+    return plot_wanted(o) && !o->file && !o->resume &&
+           !option_given(o, "format");
 }
 
 void plot_say_written(const options *o, const plan *p, const char *integrator,

@@ -3,6 +3,7 @@
    The page is made when nevh is built (web/kit.html); a line of it says where
    the scene goes, as JSON.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
 #include "report_private.h"
 #include <errno.h>
 #include <math.h>
@@ -159,7 +160,7 @@ static char *all_scenes(const options *o) {
     return NULL;
 }
 
-int live_page(const options *o) {
+static int live_page(const options *o) {
     char *head = NULL, *tail = NULL;
     output out;
     if (!o->file)
@@ -178,3 +179,14 @@ int live_page(const options *o) {
     free(head);
     return status;
 }
+
+const command page_command = {
+    .name = "page",
+    .operand = "SCENE...",
+    .brief = "a live page that runs in a browser, offline",
+    .help = "a live page in one file: the scene runs in a browser, offline",
+    .examples = "page pendulum -o pendulum.html\n"
+                "page pendulum kepler --dt 0.05 -o class.html",
+    .options = "with without set start integrators dt gradient output",
+    .run = live_page,
+};

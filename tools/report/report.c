@@ -1,5 +1,6 @@
 /* nevh report: what the other commands say of a scene, as one page of HTML.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
 #include "plot/plot.h"
 #include "film_private.h"
 #include "report_private.h"
@@ -20,7 +21,7 @@ typedef struct {
 
 typedef struct {
     const char *title, *about, *arguments;
-    command *run;
+    const command *of;
     bool (*wanted)(nevh_scene *);
     plot_kind kind;
     bool rows, draws;
@@ -61,39 +62,39 @@ static const kind_of_part kinds[] = {
     {"Energy errors",
      "Each row is an integrator at one step. Bounded errors stay; drifting "
      "errors grow with time. The picture shows the error against time.",
-     "compare", compare, always, PLOT_USUAL, true, true, 0},
+     "compare", &compare_command, always, PLOT_USUAL, true, true, 0},
     {"The motion", "Paths of the bodies, computed by the first integrator.",
-     "run --plot-kind configuration", run_scene, has_picture,
+     "run --plot-kind configuration", &run_command, has_picture,
      PLOT_CONFIGURATION, false, true, 0},
     {"A symplectic scheme beside rk4",
      "Both take the same dt: the smallest at which rk4's loss can be seen "
      "within the animation.",
      "compare", NULL, has_picture, PLOT_USUAL, false, false, 0},
     {"Phase plane", "A coordinate and its momentum, by the first integrator.",
-     "run --plot-kind phase", run_scene, always, PLOT_PHASE, false, true, 0},
+     "run --plot-kind phase", &run_command, always, PLOT_PHASE, false, true, 0},
     {"Portrait", "Orbits over level curves of H, a panel for each integrator.",
-     "portrait", portrait, has_plane, PLOT_USUAL, false, true, 0},
+     "portrait", &portrait_command, has_plane, PLOT_USUAL, false, true, 0},
     {"Sections", "Points where the orbit crosses the section.", "section",
-     section, has_sections, PLOT_USUAL, false, true, 0},
+     &section_command, has_sections, PLOT_USUAL, false, true, 0},
     {"Order and chaos",
      "The Lyapunov exponent of the orbit from the scene's start: how fast "
      "orbits near by separate.",
-     "chaos --starts 2 --budget 4", chaos, has_room, PLOT_USUAL, true, false,
-     4},
+     "chaos --starts 2 --budget 4", &chaos_command, has_room, PLOT_USUAL, true,
+     false, 4},
     {"What accuracy costs",
      "Processor time for each digit. The picture is the work-precision "
      "diagram: lower left is better.",
-     "cost --budget 5", cost, always, PLOT_USUAL, true, true, 5},
+     "cost --budget 5", &cost_command, always, PLOT_USUAL, true, true, 5},
     {"Effects",
      "What each effect reads and costs. Effects that are off cost "
      "nothing.",
-     "effects", effects, always, PLOT_USUAL, true, false, 0},
+     "effects", &effects_command, always, PLOT_USUAL, true, false, 0},
     {"Gradients",
      "Error and time of the gradient by each method. Large "
      "differences suffer from truncation, small ones from rounding.",
-     "gradients", gradients, always, PLOT_USUAL, true, true, 0},
+     "gradients", &gradients_command, always, PLOT_USUAL, true, true, 0},
     {"Properties of H", "Tested numerically at states around the start.",
-     "check", check, always, PLOT_USUAL, true, false, 0},
+     "check", &check_command, always, PLOT_USUAL, true, false, 0},
 };
 enum { KINDS = sizeof kinds / sizeof *kinds, STARTS = 2, FILM_BYTES = 100000 };
 
@@ -147,13 +148,13 @@ static char *command_of(const report_work *w, const char *scene,
 }
 
 /* Runs a command with stderr in a file; -1 where that cannot be. */
-static int run_heard(report_work *w, command *run, const options *o) {
+static int run_heard(report_work *w, const command *c, const options *o) {
     int kept = dup(STDERR_FILENO), status = -1;
     FILE *heard = fopen(w->messages, "w");
     fflush(stderr);
     if (kept >= 0 && heard && dup2(fileno(heard), STDERR_FILENO) >= 0) {
         w->terminal = kept;
-        status = run(o);
+        status = c->run(o);
         fflush(stderr);
         dup2(kept, STDERR_FILENO);
         w->terminal = -1;
@@ -174,7 +175,7 @@ static report_part make_part(report_work *w, const kind_of_part *kind,
     o.plot.file = kind->draws && w->draws ? w->picture : NULL;
     o.plot.narrow = w->narrow;
     o.plot.kind = kind->kind;
-    o.chaos.starts = kind->run == chaos ? STARTS : 0;
+    o.chaos.starts = kind->of == &chaos_command ? STARTS : 0;
     o.search.budget = kind->budget;
     o.as_html = true;
     o.quiet = !kind->rows;
@@ -185,7 +186,7 @@ static report_part make_part(report_work *w, const kind_of_part *kind,
                         .about = kind->about,
                         .undrawn = kind->draws && !w->draws};
     if (kind->rows || w->draws)
-        part.status = run_heard(w, kind->run, &o);
+        part.status = run_heard(w, kind->of, &o);
     part.html = text_read(w->rows);
     part.picture = text_read(w->picture);
     part.narrow = text_read(w->narrow);
@@ -271,9 +272,9 @@ static int add_part(report_work *w, const kind_of_part *kind, char *name,
     int status = TOOL_OK;
     w->given = &v->given;
     report_part part =
-        kind->run ? make_part(w, kind, name) : make_film(w, kind, name);
+        kind->of ? make_part(w, kind, name) : make_film(w, kind, name);
     part.variant = v->name;
-    if (kind->run == compare &&
+    if (kind->of == &compare_command &&
         (part.status == TOOL_USAGE || !has_verdict(&part)))
         status = refuse(name, &part);
     else if (part.command)
@@ -396,7 +397,7 @@ static void begin_page(const options *o, FILE *f) {
     free(title);
 }
 
-int report(const options *o) {
+static int report(const options *o) {
     report_work w = {.given = o, .terminal = -1};
     char *text = NULL;
     size_t size;
@@ -432,3 +433,15 @@ int report(const options *o) {
     free(text);
     return status;
 }
+
+const command report_command = {
+    .name = "report",
+    .operand = "SCENE...",
+    .brief = "one HTML page with all tables and pictures",
+    .help =
+        "one page of HTML with the tables and pictures of the other commands",
+    .examples = "report pendulum -o pendulum.html\n"
+                "report pendulum --variant g=1.6 -o moon.html",
+    .options = "SCENE STEPS variant output",
+    .run = report,
+};

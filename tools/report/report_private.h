@@ -36,8 +36,7 @@ void variants_close(variants *);
 /* report.c: a whole file, to be freed; NULL: there is none, or it is empty. */
 char *text_read(const char *name);
 
-/* report_html.c: text with markup's characters written out. */
-void html_text(FILE *, const char *);
+/* report_html.c */
 /* wide: things stand side by side */
 void html_head(FILE *, const char *title, bool wide);
 /* Of as many as `count`, where they are several. */

@@ -1,6 +1,5 @@
 /* nevh report: a scene as it is given, or its variants.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/options_private.h"
 #include "report_private.h"
 #include <stdlib.h>
 
@@ -12,7 +11,8 @@ static int variant_open(variant *v, const options *o, const char *name,
     v->given.settings = (list){0};
     for (size_t i = 0; i < o->settings.count; i++)
         list_add(&v->given.settings, o->settings.item[i]);
-    if (name && read_set(&v->given, name))
+    const option_row *set = option_find("set");
+    if (name && set->read(&v->given, set, name))
         return TOOL_USAGE;
     return scene_open_named(&v->scene, scene, &v->given);
 }

@@ -1,5 +1,6 @@
 /* nevh cost: what a digit costs.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
 #include "cost_private.h"
 #include "plot/order_plot.h"
 #include <math.h>
@@ -300,7 +301,7 @@ static int cost_plan(const options *o, plan *p, double whole) {
     return status;
 }
 
-int cost(const options *o) {
+static int cost(const options *o) {
     plan p;
     double whole = NAN;
     int status = plan_make(&p, o);
@@ -308,7 +309,7 @@ int cost(const options *o) {
         status = plan_search(&p, o);
     if (!status && !o->t_end && !o->dt.count)
         whole = plan_shorten(&p, cost_budget(o));
-    if (!status && (o->search.by_state || o->observable))
+    if (!status && (o->search.by || o->observable))
         status = plan_require_reference(&p);
     else if (!status && o->format != FORMAT_TABLE)
         status = plan_reference(&p, p.t_end);
@@ -319,3 +320,18 @@ int cost(const options *o) {
     plan_free(&p);
     return status;
 }
+
+const command cost_command = {
+    .name = "cost",
+    .operand = "SCENE",
+    .brief = "what each digit costs",
+    .help = "what each digit costs, for each integrator",
+    .examples =
+        "cost oscillator --t-end 20\n"
+        "cost pendulum --t-end 20 --integrators verlet,gauss6,rk4 --by state",
+    .options =
+        "SCENE STEPS NATIVE TABLE PLOT by observable repeat budget plot-kind",
+    .draws = "order",
+    .columns = RECORD_COLUMNS,
+    .run = cost,
+};

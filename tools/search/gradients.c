@@ -1,6 +1,7 @@
 /* nevh gradients: errors and costs of gradient methods and steps along the
    orbit, and their part in the energy error.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
 #include "gradients_private.h"
 #include "plot/plot.h"
 #include <math.h>
@@ -93,24 +94,16 @@ static void add_all(page *result, findings *f, bool for_people) {
 }
 
 static table *new_table(bool for_people) {
-    static const char *const names[] = {"gradient",
-                                        "half_spread",
-                                        "max_error",
-                                        "truncation_estimate",
-                                        "rounding_estimate",
-                                        "hamiltonian_evals",
-                                        "nanoseconds",
-                                        "max_energy_error",
-                                        "energy_from_gradient",
-                                        "energy_floor"};
     static const char *const shown[] = {
         "gradient",      "half-\nspread", "largest\nerror",
         "trunca-\ntion", "round-\ning",   "H\nevals",
         "\nns",          "energy\nerror", "from the\ngradient",
         "from\nrounding"};
     table *t = table_new();
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        table_column(t, for_people ? shown[i] : names[i]);
+    if (for_people)
+        table_columns(t, shown, sizeof shown / sizeof *shown);
+    else
+        table_titles(t, gradients_command.columns);
     return t;
 }
 
@@ -173,7 +166,7 @@ static int gradients_plan(const options *o, const plan *p) {
     return drawn ? TOOL_USAGE : status;
 }
 
-int gradients(const options *o) {
+static int gradients(const options *o) {
     plan p;
     int status = plan_make(&p, o);
     if (!status && o->file)
@@ -183,3 +176,17 @@ int gradients(const options *o) {
     plan_free(&p);
     return status;
 }
+
+const command gradients_command = {
+    .name = "gradients",
+    .operand = "SCENE",
+    .brief = "error and cost of the gradient methods",
+    .help = "error and cost of each gradient method and step along the orbit",
+    .examples = "gradients pendulum\n"
+                "gradients pendulum --t-end 10 --plot gradients.svg",
+    .options = "SCENE STEPS NATIVE TABLE PLOT",
+    .columns = "gradient,half_spread,max_error,truncation_estimate,"
+               "rounding_estimate,hamiltonian_evals,nanoseconds,"
+               "max_energy_error,energy_from_gradient,energy_floor",
+    .run = gradients,
+};

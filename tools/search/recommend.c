@@ -1,6 +1,7 @@
 /* nevh recommend: the cheapest integrator, gradient and step that keep an
    error.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
 #include "recommend_private.h"
 #include <math.h>
 #include <stdlib.h>
@@ -272,7 +273,7 @@ static int check_reference(plan *p, double target) {
     return TOOL_FAILED;
 }
 
-int recommend(const options *o) {
+static int recommend(const options *o) {
     plan p;
     double whole = NAN;
     if (check_target(o))
@@ -291,3 +292,17 @@ int recommend(const options *o) {
     plan_free(&p);
     return status;
 }
+
+const command recommend_command = {
+    .name = "recommend",
+    .operand = "SCENE",
+    .brief = "the cheapest way to keep an error below a target",
+    .help =
+        "the cheapest integrator, gradient and step whose error stays below a target",
+    .examples = "recommend pendulum --t-end 20 --energy-error 1e-8\n"
+                "recommend kepler --t-end 20 --state-error 1e-6",
+    .options =
+        "SCENE STEPS NATIVE TABLE energy-error state-error observable error repeat",
+    .columns = RECORD_COLUMNS,
+    .run = recommend,
+};

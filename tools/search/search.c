@@ -42,7 +42,7 @@ static double seconds_of_children(void) {
 search search_begin(const plan *p, const options *o, double budget) {
     search s = {.plan = *p,
                 .repeats = o->search.repeats,
-                .by_state = o->search.by_state || o->observable,
+                .by_state = o->search.by || o->observable,
                 .quiet = o->quiet,
                 .budget = budget,
                 .seconds = o->search.budget > 0 ? budget : most_seconds,

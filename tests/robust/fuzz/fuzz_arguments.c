@@ -7,6 +7,7 @@
 #include "experiment/plan.h"
 #include <getopt.h>
 #include <math.h>
+#include <string.h>
 
 enum { MOST = 40 };
 static const char tiny[] = "[parameters]\n"
@@ -43,8 +44,13 @@ static void insist_on_plan(const plan *p) {
 
 static void use(options *o) {
     plan p;
-    for (unsigned bit = FOR_COMPARE; bit <= FOR_HARD; bit *= 2)
-        options_check(o, bit);
+    const command some = {.name = "some", .options = "SCENE STEPS every"};
+    for (size_t i = 0; i < o->given.count; i++) {
+        const option_row *row = option_find(o->given.item[i]);
+        insist(row && strcmp(row->name, o->given.item[i]) == 0);
+        insist(command_takes(&some, row) || row->group == NULL ||
+               strcmp(row->group, "SCENE") != 0);
+    }
     int status = plan_make(&p, o);
     insist(status == TOOL_OK || status == TOOL_USAGE);
     if (!status)

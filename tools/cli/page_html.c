@@ -1,7 +1,6 @@
 /* nevh: a page as HTML: notes, a table with its headings, words.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/table_private.h"
-#include "report_private.h"
+#include "table_private.h"
 #include <stdlib.h>
 #include <string.h>
 

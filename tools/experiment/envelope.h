@@ -3,7 +3,7 @@
 #ifndef NEVH_ENVELOPE_H
 #define NEVH_ENVELOPE_H
 
-#include "experiment/row.h"
+#include "row.h"
 
 enum { ENVELOPE_PARTS = 1000 };
 

@@ -2,7 +2,7 @@
 
    The orbit by a method of order 8 that adapts its steps.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "experiment/pace.h"
+#include "pace.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>

@@ -1,0 +1,82 @@
+/* nevh: the list of commands, and whether one takes what it is given.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/commands.h"
+#include <stdlib.h>
+#include <string.h>
+
+#define COMMAND_OF(name) &name##_command,
+const command *const commands[] = {COMMANDS(COMMAND_OF) NULL};
+
+const command *command_find(const char *name) {
+    list names = {0};
+    size_t i = 0;
+    for (; commands[i] && strcmp(name, commands[i]->name) != 0; i++)
+        list_add(&names, commands[i]->name);
+    if (!commands[i])
+        tool_unknown("command", name, &names);
+    list_free(&names);
+    return commands[i];
+}
+
+/* With what to do instead, or the commands that it is for, where they are few. */
+static int refuse_option(const command *c, const option_row *row) {
+    enum { FEW = 5 };
+    if (c->instead.option && strcmp(c->instead.option, row->name) == 0)
+        return tool_refuse("--%s is no option of nevh %s: %s", row->name,
+                           c->name, c->instead.advice);
+    list those = {0};
+    for (size_t i = 0; commands[i]; i++)
+        if (command_takes(commands[i], row))
+            list_add(&those, commands[i]->name);
+    char *text = list_joined(&those);
+    int status =
+        tool_refuse(those.count <= FEW ? "--%s is no option of nevh "
+                                         "%s; it is for %s"
+                                       : "--%s is no option of nevh %s",
+                    row->name, c->name, text);
+    free(text);
+    list_free(&those);
+    return status;
+}
+
+static bool draws(const command *c, const char *kind) {
+    list kinds = {0};
+    list_split_at(&kinds, c->draws ? c->draws : "", '|');
+    bool does = list_has(&kinds, kind);
+    list_free(&kinds);
+    return does;
+}
+
+static int check_plot_kind(const command *c, const char *kind) {
+    list those = {0}, kinds = {0};
+    if (draws(c, kind))
+        return TOOL_OK;
+    list_split_at(&kinds, c->draws, '|');
+    for (size_t i = 0; commands[i]; i++)
+        if (draws(commands[i], kind))
+            list_print(&those, "nevh %s", commands[i]->name);
+    char *others = list_sentence(&those, "and");
+    char *usual = list_sentence(&kinds, "or");
+    tool_refuse("--plot-kind %s is for %s; of nevh %s it is %s, or not given",
+                kind, others, c->name, usual);
+    free(others);
+    free(usual);
+    list_free(&those);
+    list_free(&kinds);
+    return TOOL_USAGE;
+}
+
+int command_check(const command *c, const options *o) {
+    for (size_t i = 0; i < o->given.count; i++) {
+        const option_row *row = option_find(o->given.item[i]);
+        if (!command_takes(c, row))
+            return refuse_option(c, row);
+    }
+    if (!o->plot.kind)
+        return TOOL_OK;
+    list kinds = {0};
+    list_split_at(&kinds, option_find("plot-kind")->words, '|');
+    int status = check_plot_kind(c, kinds.item[o->plot.kind - PLOT_PHASE]);
+    list_free(&kinds);
+    return status;
+}
