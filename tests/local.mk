@@ -193,6 +193,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh.sh \
 	tests/tool/nevh_scenes.sh \
 	tests/tool/nevh_help.sh \
+	tests/tool/nevh_commands.sh \
 	tests/tool/nevh_start.sh \
 	tests/build/quickstart.sh \
 	tests/scene/bad_scenes.sh \
