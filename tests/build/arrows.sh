@@ -5,7 +5,9 @@
 
 srcdir=${srcdir:-.}
 order='system expression taylor gradient work implicit integrators native run diagnose
-    ensemble scene models tools'
+    ensemble scene models
+    tools/cli tools/experiment tools/plot tools/orbit tools/inspect tools/search
+    tools/compare tools/hard tools/report tools'
 work=arrows.$$
 trap 'rm -rf $work' EXIT
 trap 'exit 1' HUP INT TERM
@@ -49,9 +51,15 @@ test "$(alone $work/tested $work/all)" = 'a.o hidden' || {
     exit 1
 }
 
-# lib/ROOM/..., or the first folder.
-folder_of='function folder(path, part) {
-    split(path, part, "/"); return part[1] == "lib" ? part[2] : part[1] }'
+# lib/ROOM/..., tools/ROOM/..., or the first folder.  Three rooms of tools use each
+# other: an orbit shows measured points, a fit runs orbits, a section has members.
+folder_of='function folder(path, part, n) {
+    n = split(path, part, "/")
+    if (part[1] == "tools" && n > 2)
+        return part[2] ~ /^(fit|ensemble)$/ ? "tools/orbit" : "tools/" part[2]
+    return part[1] == "lib" ? part[2] : part[1] }'
+test "$(echo tools/fit/a.c | awk "$folder_of"'{ print folder($0) }')" = tools/orbit ||
+    exit 1
 
 # Headers in include/nevh belong to the folder that implements them.
 (cd "$srcdir" && grep -E '^#include ["<]' /dev/null \
@@ -65,14 +73,14 @@ folder_of='function folder(path, part) {
         of["section"] = "run"; of["diagnose"] = of["reference"] = of["loop"] = of["frequencies"] = "diagnose"
         of["chaos"] = "diagnose"; of["confirm"] = "diagnose"; of["shadow"] = "diagnose"; of["certain"] = "taylor"
         of["ensemble"] = "ensemble"; of["sweep"] = "scene"
-        of["scene"] = of["binding"] = "scene"; of["models"] = "models"; of["nevh"] = "tools"
+        of["scene"] = of["binding"] = "scene"; of["models"] = "models"; of["nevh"] = "models"
     }
     $3 ~ /^nevh\// { name = substr($3, 6); sub(/\.h$/, "", name)
         print folder($1), of[name] == "" ? "unknown" : of[name], $1, $3; next }
     $2 ~ /^#include / && $3 ~ /\// && $0 ~ /"/ {
         split($3, part, "/"); room = part[1] == "kernels" ? "integrators" : part[1]
-        if (folder($1) == "tools")
-            room = "tools"
+        if ($1 ~ /^tools\//)
+            room = folder("tools/" $3)
         print folder($1), room, $1, $3 }' >$work/includes
 upward <$work/includes >$work/wrong
 test -s $work/includes || { echo "no include was found"; status=1; }
@@ -90,7 +98,7 @@ if test -n "$objects" && $nm --version >/dev/null 2>&1; then
     $nm -A -P $objects 2>/dev/null | sed 's/\[[^]]*\]: */: /' >$work/all
     awk -F': ' "$folder_of"'
         { split($2, word, " ") }
-        word[1] !~ /^_?nevh_|^_?tool_/ && folder($1) != "tools" { next }
+        word[1] !~ /^_?nevh_|^_?tool_/ && $1 !~ /^tools/ { next }
         word[2] ~ /^[TDBRCVWi]$/ { of[word[1]] = folder($1); next }
         word[2] == "U" && folder($1) != "" {
             user[++n] = folder($1); used[n] = word[1]; file[n] = $1 }
