@@ -262,6 +262,7 @@ libnevh_core_la_SOURCES = \
 	lib/ensemble/outcomes/last.c \
 	lib/ensemble/outcomes/extremes.c \
 	lib/ensemble/outcomes/mean.c \
+	lib/ensemble/outcomes/rms.c \
 	lib/ensemble/outcomes/crossings.c \
 	lib/ensemble/outcomes/frequency.c \
 	lib/ensemble/outcomes/chaotic.c \

@@ -84,6 +84,70 @@ TEST(periods_are_the_elliptic_integral) {
     free(all);
 }
 
+/* Of a momentum over a period: the root of action over period, while the mean is
+   0.  The rule on the steps has positive weights: no mean exceeds the rms. */
+TEST_EACH(rms_is_the_root_mean_square, 4) {
+    double k = sin((_i + 1) * 0.35), K = gsl_sf_ellint_Kcomp(k, 0);
+    double action = gsl_sf_ellint_Ecomp(k, 0) / K - (1 - k * k);
+    char text[800];
+    snprintf(text, sizeof text,
+             PENDULUM "phi = %.17g, 0\noutcomes = rms(p_phi), mean(p_phi), "
+                      "rms(sin(2*pi*t/%.17g)), rms(phi - 1), mean(phi - 1), "
+                      "rms(-3), rms(t)\n",
+             2 * asin(k), 4 * K / sqrt(9.8));
+    nevh_sweep_options o = plain();
+    o.t_end = 4 * K / sqrt(9.8);
+    o.dt = o.t_end / 400;
+    results *all = run(text, o);
+    const double *row = all->row[0];
+    ck_assert_double_eq_tol(row[1], 2 * sqrt(9.8 * action), 1e-9);
+    ck_assert_double_lt(fabs(row[2]), 1e-9);
+    ck_assert_double_eq_tol(row[3], sqrt(0.5), 1e-12);
+    ck_assert_double_gt(row[4], fabs(row[5]) * (1 + 1e-3));
+    ck_assert_double_eq_tol(row[6], 3, 1e-15);
+    ck_assert_double_eq_tol(
+        row[7], sqrt(o.t_end * o.t_end / 3 + o.dt * o.dt / 6), 1e-12);
+    free(all);
+}
+
+/* Squares overflow or vanish, as the mean of squares shows; the rms does not. */
+TEST(rms_is_of_any_unit) {
+    results *all =
+        run(PENDULUM "phi = 0, 1, 2\noutcomes = rms(phi), rms(2^1000*phi), "
+                     "rms(phi/2^1000), mean((2^1000*phi)^2), "
+                     "mean((phi/2^1000)^2), rms(phi*t), rms(1/phi)\n",
+            plain());
+    for (size_t i = 0; i < all->count; i++) {
+        const double *row = all->row[i];
+        ck_assert_double_eq(row[2], ldexp(row[1], 1000));
+        ck_assert_double_eq(row[3], ldexp(row[1], -1000));
+        ck_assert_double_eq(row[5], 0);
+        ck_assert_int_eq(isfinite(row[4]) != 0, i == 0);
+        ck_assert_int_eq(row[6] > row[1], i > 0);
+        ck_assert_int_eq(isnan(row[7]) != 0, i == 0);
+    }
+    free(all);
+}
+
+TEST_EACH(rms_is_that_of_orbits_alone, 4) {
+    static const char text[] =
+        PENDULUM "g = 8, 9.8\nphi = range(-3, 3, 100)\n"
+                 "outcomes = rms(phi), rms(v_phi*t), mean(phi), last(phi)\n";
+    nevh_sweep_options o = plain();
+    o.integrator = _i % 2 ? nevh_dopri5 : nevh_verlet;
+    o.tolerance = _i % 2 ? 1e-8 : 0;
+    o.width = 1;
+    results *one = run(text, o);
+    o.width = _i < 2 ? 8 : 32;
+    o.threads = 3;
+    results *many = run(text, o);
+    ck_assert_mem_eq(many->row, one->row, sizeof one->row);
+    for (size_t i = 0; i < one->count; i++)
+        ck_assert_double_ge(one->row[i][2] * (1 + 1e-15), fabs(one->row[i][4]));
+    free(one);
+    free(many);
+}
+
 /* A parameter that is varied gives the same as the same scene with it set. */
 TEST(parameters_are_those_of_a_scene) {
     const double g[] = {1.6, 9.8, 24.8};

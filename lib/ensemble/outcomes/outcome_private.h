@@ -24,7 +24,8 @@
     X(frequency)                                                               \
     X(lyapunov)                                                                \
     X(sali)                                                                    \
-    X(megno)
+    X(megno)                                                                   \
+    X(rms)
 
 /* An orbit at its start, after a step, or at its end. */
 typedef struct {
