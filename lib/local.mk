@@ -58,6 +58,8 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/gsl_system.c \
 	lib/expression/tape_private.h \
 	lib/expression/tape_inside_private.h \
+	lib/expression/operations_private.h \
+	lib/expression/operations.c \
 	lib/expression/tape_operations_private.h \
 	lib/expression/tape_run.h \
 	lib/expression/tape_back.h \

@@ -15,6 +15,7 @@ suites = \
 	tests/system/check_probe \
 	tests/expression/check_tape \
 	tests/expression/check_tape_build \
+	tests/expression/check_operations \
 	tests/expression/check_range \
 	tests/expression/check_timing \
 	tests/expression/check_tape_terms \
@@ -123,6 +124,7 @@ tests_scheme_check_tao_LDADD = $(INSIDE_LIBS)
 tests_gradient_check_time_slope_LDADD = $(INSIDE_LIBS)
 tests_run_check_transform_LDADD = $(INSIDE_LIBS)
 tests_expression_check_tape_LDADD = $(INSIDE_LIBS)
+tests_expression_check_operations_LDADD = $(INSIDE_LIBS)
 tests_expression_check_range_LDADD = $(INSIDE_LIBS)
 tests_expression_check_tape_build_LDADD = $(INSIDE_LIBS)
 tests_expression_check_tape_terms_LDADD = $(INSIDE_LIBS)

@@ -31,12 +31,6 @@ nevh__tape_operation nevh__function_named(const char *name, size_t bytes) {
 }
 
 const char *nevh__function_usage(nevh__tape_operation operation) {
-    switch (operation) {
-    case NEVH__ATAN2:
-        return "(y, x)";
-    case NEVH__MOD:
-        return "(a, b)";
-    default:
-        return nevh__operation_arguments(operation) == 2 ? "(x, y)" : "(x)";
-    }
+    const nevh__operation_traits *f = nevh__operation_of(operation);
+    return f->usage ? f->usage : f->arity == 2 ? "(x, y)" : "(x)";
 }

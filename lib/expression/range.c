@@ -202,7 +202,7 @@ static nevh__range exponential(nevh__range a) {
 static nevh__range logarithm(nevh__tape_operation f, nevh__range a) {
     interval x = within(value_of(a), 0, INFINITY), by = inverse(x);
     if (f == NEVH__LOG10)
-        by = (interval){by.low / NEVH__LN10, by.high / NEVH__LN10};
+        by = (interval){by.low / log(10), by.high / log(10)};
     nevh__range y = rising(f, x, by, a);
     y.broken |= x.low == 0 ? NEVH__POLE : 0;
     return y;
@@ -309,9 +309,11 @@ static nevh__range hyperbolic(nevh__tape_operation f, nevh__range a) {
     case NEVH__ACOSH:
         x = within(x, 1, INFINITY);
         return rising(f, x, inverse(root(plus_number(-1, square(x)))), a);
-    default: /* ATANH */
+    case NEVH__ATANH:
         x = within(x, -1, 1);
         return rising(f, x, inverse(minus((interval){1, 1}, square(x))), a);
+    default: /* nothing is known of it */
+        return join(all, all, a.broken);
     }
 }
 
@@ -395,8 +397,10 @@ static nevh__range of_two(nevh__tape_operation f, nevh__range a,
         return negative(larger(negative(a), negative(b)));
     case NEVH__MOD:
         return remainder_of(a, b);
-    default: /* ECCENTRIC */
+    case NEVH__ECCENTRIC:
         return anomaly(a, b);
+    default:
+        return join(all, all, broken);
     }
 }
 

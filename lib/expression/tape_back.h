@@ -16,10 +16,10 @@
         }                                                                      \
     }                                                                          \
     break;
-#define CASE_A(identifier, value, by_a, by_b)                                  \
+#define CASE_A(kind, identifier, name, arity, value, by_a, by_b, ...)          \
     case NEVH__##identifier:                                                   \
         EACH(by_a)
-#define CASE_B(identifier, value, by_a, by_b)                                  \
+#define CASE_B(kind, identifier, name, arity, value, by_a, by_b, ...)          \
     case NEVH__##identifier:                                                   \
         EACH(by_b)
 #define ROWS(argument)                                                         \
@@ -38,7 +38,7 @@ NEVH__NAMED(hand_on_a)(const sweep *s, const nevh__instruction *at, double *d) {
     const double *from_cosine = s->rows.slots + at->also * columns;
     const double *from_g_cosine = s->base[NEVH__SLOT] + at->also * columns;
     switch (at->operation) {
-        NEVH__FORMULAS(CASE_A)
+        NEVH__OPERATIONS(CASE_A)
     case NEVH__SINCOS:
         EACH(nevh__chain(g, from_cosine[i + lane]) -
              nevh__chain(from_g_cosine[i + lane], y))
@@ -48,7 +48,7 @@ NEVH__NAMED(hand_on_a)(const sweep *s, const nevh__instruction *at, double *d) {
 NEVH__INLINE void
 NEVH__NAMED(hand_on_b)(const sweep *s, const nevh__instruction *at, double *d) {
     ROWS(at->b);
-    switch (at->operation) { NEVH__FORMULAS(CASE_B) }
+    switch (at->operation) { NEVH__OPERATIONS(CASE_B) }
 }
 
 /* journal: where it ends. */

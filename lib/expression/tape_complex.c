@@ -12,7 +12,7 @@ typedef struct {
 } number;
 
 /* What is real stays real, also where the derivative is not finite. */
-#define CASE(identifier, value, by_a, by_b)                                    \
+#define CASE(kind, identifier, name, arity, value, by_a, by_b, ...)            \
     case NEVH__##identifier: {                                                 \
         double y = value, g = u.im, im = g == 0 ? 0 : by_a;                    \
         g = v.im;                                                              \
@@ -22,7 +22,7 @@ NEVH__INLINE number apply(unsigned operation, number u, number v,
                           number *also) {
     double a = u.re, b = v.re;
     switch (operation) {
-        NEVH__FORMULAS(CASE)
+        NEVH__OPERATIONS(CASE)
     case NEVH__SINCOS: {
         double sine = sin(a), cosine = cos(a);
         *also = (number){cosine, -sine * u.im};

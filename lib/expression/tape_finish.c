@@ -203,26 +203,6 @@ bool nevh__tape_breaks(const nevh__tape *tape) {
     return false;
 }
 
-bool nevh__operation_is_smooth(unsigned operation) {
-    switch (operation) {
-    case NEVH__ABS:
-    case NEVH__MIN:
-    case NEVH__MAX:
-    case NEVH__SIGN:
-    case NEVH__MOD:
-    case NEVH__FLOOR:
-        return false;
-    default:
-        return true;
-    }
-}
-
-bool nevh__operation_is_special(unsigned operation) {
-    return operation == NEVH__BESSEL_J0 || operation == NEVH__BESSEL_J1 ||
-           operation == NEVH__ELLIPTIC_K || operation == NEVH__ELLIPTIC_E ||
-           operation == NEVH__ECCENTRIC;
-}
-
 static void note_read(nevh__tape *tape, nevh__tape_operand o) {
     if (o.kind < NEVH__VARIABLES)
         tape->read[o.kind][o.at] = true;

@@ -20,15 +20,14 @@
 #ifndef NEVH_TAPE_PRIVATE_H
 #define NEVH_TAPE_PRIVATE_H
 
+#include "expression/operations_private.h"
 #include <nevh/system.h>
 
 /* Time; the instance's k-th coordinate, momentum and constant. */
 typedef enum { NEVH__T, NEVH__Q, NEVH__P, NEVH__C } nevh__variable;
 enum { NEVH__VARIABLES = 4 };
 
-/* Identifier, name in formulas, number of arguments.
-
-   atan2(y, x).  mod has the sign of its second argument and is exact for
+/* The operations of operations_private.h.  atan2(y, x).  mod has the sign of its second argument and is exact for
    integers.  Of min and max, an argument that is NaN wins.  bessel_j0 and
    bessel_j1 are of the first kind, |x| < 4e15; elliptic_k and elliptic_e are
    complete integrals of the modulus k, |k| < 1 (elliptic_e: also 1).
@@ -39,54 +38,55 @@ enum { NEVH__VARIABLES = 4 };
    0, hypot at (0, 0); min and max of equals have that of the second argument;
    sign and floor have 0 everywhere, mod by its first argument 1.  In the chain
    rule 0 times infinity is 0, as for x*sqrt(x) at 0. */
-#define NEVH__OPERATIONS(X)                                                    \
-    X(ADD, "+", 2)                                                             \
-    X(SUBTRACT, "-", 2)                                                        \
-    X(MULTIPLY, "*", 2)                                                        \
-    X(DIVIDE, "/", 2)                                                          \
-    X(POWER, "^", 2)                                                           \
-    X(NEGATE, "-", 1)                                                          \
-    X(SQUARE, "^2", 1)                                                         \
-    X(CUBE, "^3", 1)                                                           \
-    X(SIN, "sin", 1)                                                           \
-    X(COS, "cos", 1)                                                           \
-    X(TAN, "tan", 1)                                                           \
-    X(ASIN, "asin", 1)                                                         \
-    X(ACOS, "acos", 1)                                                         \
-    X(ATAN, "atan", 1)                                                         \
-    X(ATAN2, "atan2", 2)                                                       \
-    X(SINH, "sinh", 1)                                                         \
-    X(COSH, "cosh", 1)                                                         \
-    X(TANH, "tanh", 1)                                                         \
-    X(ASINH, "asinh", 1)                                                       \
-    X(ACOSH, "acosh", 1)                                                       \
-    X(ATANH, "atanh", 1)                                                       \
-    X(EXP, "exp", 1)                                                           \
-    X(LOG, "log", 1)                                                           \
-    X(LOG10, "log10", 1)                                                       \
-    X(SQRT, "sqrt", 1)                                                         \
-    X(CBRT, "cbrt", 1)                                                         \
-    X(HYPOT, "hypot", 2)                                                       \
-    X(ABS, "abs", 1)                                                           \
-    X(MIN, "min", 2)                                                           \
-    X(MAX, "max", 2)                                                           \
-    X(SIGN, "sign", 1)                                                         \
-    X(MOD, "mod", 2)                                                           \
-    X(FLOOR, "floor", 1)                                                       \
-    X(BESSEL_J0, "bessel_j0", 1)                                               \
-    X(BESSEL_J1, "bessel_j1", 1)                                               \
-    X(ELLIPTIC_K, "elliptic_k", 1)                                             \
-    X(ELLIPTIC_E, "elliptic_e", 1)                                             \
-    X(ECCENTRIC, "kepler", 2)
-
-#define NEVH__OPERATION_ENTRY(identifier, name, arguments) NEVH__##identifier,
+#define NEVH__OPERATION_ENTRY(kind, identifier, ...) NEVH__##identifier,
 typedef enum {
     NEVH__OPERATIONS(NEVH__OPERATION_ENTRY) NEVH__OPERATION_COUNT
 } nevh__tape_operation;
 #undef NEVH__OPERATION_ENTRY
 
-/* The name in formulas, and 1 or 2.  Names of functions begin with a letter;
-   pow(x, y) is for who reads formulas to map to NEVH__POWER. */
+typedef enum {
+    NEVH__KIND_ARITHMETIC,
+    NEVH__KIND_FUNCTION,
+    NEVH__KIND_KINK,
+    NEVH__KIND_SPECIAL
+} nevh__operation_kind;
+
+/* A formula {numerator, denominator}; numerator NULL: not known; denominator
+   NULL: 1. */
+typedef struct {
+    const char *top, *bottom;
+} nevh__derivative_text;
+
+/* An entry of operations_private.h.  Texts may be NULL. */
+typedef struct {
+    nevh__operation_kind kind;
+    const char *name; /* a function's begins with a letter */
+    int arity;        /* 1 or 2 */
+    const char *usage;
+    nevh__derivative_text by_a, by_b; /* derivatives */
+    const char *as;                   /* the same by other operations */
+    const char *edge;                 /* where it is 0 the function ends */
+    const char *at_edge;              /* and what is said there */
+    bool touches;                     /* the edge may be touched */
+    bool steep;    /* it grows faster than any polynomial, or saturates so */
+    bool exact;    /* it rounds nothing */
+    bool lanewise; /* compiled text takes lane by lane */
+} nevh__operation_traits;
+/* Also of NEVH__SINCOS. */
+const nevh__operation_traits *nevh__operation_of(unsigned);
+
+/* What a formula of an entry is built of: nodes, negative where that fails. */
+typedef struct {
+    void *data;
+    int (*number)(void *data, double);
+    int (*apply)(void *data, nevh__tape_operation, int a, int b);
+} nevh__algebra;
+/* The node of a formula; of = {a, b, y}. */
+int nevh__operation_build(const char *formula, const int of[3],
+                          const nevh__algebra *);
+
+/* The name in formulas, and 1 or 2.  pow(x, y) is for who reads formulas to map to
+   NEVH__POWER. */
 const char *nevh__operation_name(nevh__tape_operation);
 int nevh__operation_arguments(nevh__tape_operation);
 /* One operation on numbers, as the tape does it one state at a time; b is

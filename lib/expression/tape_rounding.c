@@ -16,23 +16,9 @@ typedef struct {
     double value, error;
 } number;
 
-static bool rounds(unsigned operation) {
-    switch (operation) {
-    case NEVH__NEGATE:
-    case NEVH__ABS:
-    case NEVH__MIN:
-    case NEVH__MAX:
-    case NEVH__SIGN:
-    case NEVH__FLOOR:
-        return false;
-    default:
-        return true;
-    }
-}
-
 /* The errors of the arguments, which may be of any sign, times the derivatives
    by them. */
-#define CASE(identifier, formula, by_a, by_b)                                  \
+#define CASE(kind, identifier, name, arity, formula, by_a, by_b, ...)          \
     case NEVH__##identifier: {                                                 \
         y = formula;                                                           \
         g = u.error;                                                           \
@@ -44,7 +30,7 @@ NEVH__INLINE number apply(unsigned operation, number u, number v,
                           number *also) {
     double a = u.value, b = v.value, y, g;
     switch (operation) {
-        NEVH__FORMULAS(CASE)
+        NEVH__OPERATIONS(CASE)
     case NEVH__SINCOS:
         *also = (number){cos(a), fabs(sin(a)) * u.error};
         also->error += own * fabs(also->value);
@@ -71,7 +57,7 @@ double nevh__tape_rounding(double t, const double q[], const double p[],
         }
         number y =
             apply(i->operation, arguments[0], arguments[1], &slots[i->also]);
-        if (rounds(i->operation))
+        if (!nevh__operation_of(i->operation)->exact)
             y.error += own * fabs(y.value);
         slots[i->to] = y;
     }

@@ -13,7 +13,7 @@
             (row)[i + lane] = value;                                           \
         }                                                                      \
     }
-#define CASE(identifier, value, by_a, by_b)                                    \
+#define CASE(kind, identifier, name, arity, value, by_a, by_b, ...)            \
     case NEVH__##identifier:                                                   \
         EACH(to, value)                                                        \
         break;
@@ -36,7 +36,7 @@ NEVH_SIMD static double *NEVH__RUN(const nevh__rows *r,
         if (journal && !at->also_fresh)
             journal = write_row(journal, also, columns);
         switch (at->operation) {
-            NEVH__FORMULAS(CASE)
+            NEVH__OPERATIONS(CASE)
         case NEVH__SINCOS:
             EACH(to, NEVH__F(sin)(a))
             EACH(also, NEVH__F(cos)(a))

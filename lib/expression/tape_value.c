@@ -5,29 +5,14 @@
 
 #define NEVH__F(f) f
 
-#define ENTRY(identifier, name, arguments) name,
-static const char *const names[] = {NEVH__OPERATIONS(ENTRY)};
-#undef ENTRY
-#define ENTRY(identifier, name, arguments) arguments,
-static const int argument_counts[] = {NEVH__OPERATIONS(ENTRY)};
-#undef ENTRY
-
-const char *nevh__operation_name(nevh__tape_operation operation) {
-    return names[operation];
-}
-
-int nevh__operation_arguments(nevh__tape_operation operation) {
-    return argument_counts[operation];
-}
-
-#define CASE(identifier, value, by_a, by_b)                                    \
+#define CASE(kind, identifier, name, arity, value, by_a, by_b, ...)            \
     case NEVH__##identifier:                                                   \
         return value;
 /* also: out, the cosine where the sine is returned. */
 NEVH__INLINE double apply(unsigned operation, double a, double b,
                           double *also) {
     switch (operation) {
-        NEVH__FORMULAS(CASE)
+        NEVH__OPERATIONS(CASE)
     case NEVH__SINCOS:
         *also = cos(a);
         return sin(a);

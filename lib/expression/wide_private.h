@@ -14,8 +14,8 @@ typedef long double nevh__wide;
 #define NEVH__WIDE_FUNCTION(f) f##l
 #endif
 
-/* One nevh__tape_operation on numbers.  Without libquadmath functions are those
-   of doubles. */
+/* One nevh__tape_operation on numbers.  Without libquadmath special functions
+   are those of doubles. */
 nevh__wide nevh__operation_wide(unsigned operation, nevh__wide a, nevh__wide b);
 nevh__wide nevh__wide_pi(void);
 

@@ -8,28 +8,13 @@
 #include <string.h>
 
 /* Stringified, not expanded. */
-#define TEXTS(identifier, value, by_a, by_b)                                   \
+#define TEXTS(kind, identifier, name, arity, value, by_a, by_b, ...)           \
     [NEVH__##identifier] = {#value, #by_a, #by_b},
 static const char *const texts[][NEVH__OPERATION_PARTS] = {
-    NEVH__FORMULAS(TEXTS)};
+    NEVH__OPERATIONS(TEXTS)};
 #undef TEXTS
 _Static_assert(sizeof texts / sizeof *texts == NEVH__OPERATION_COUNT,
                "each operation");
-
-/* Which operations take vectors as they stand in the table. */
-static bool is_lanewise(unsigned operation) {
-    switch (operation) {
-    case NEVH__ATAN2:
-    case NEVH__ASINH:
-    case NEVH__ACOSH:
-    case NEVH__ATANH:
-    case NEVH__LOG10:
-    case NEVH__HYPOT:
-        return true;
-    default:
-        return !nevh__operation_is_smooth(operation);
-    }
-}
 
 static bool is(const char *word, size_t length, const char *name) {
     return strlen(name) == length && strncmp(word, name, length) == 0;
@@ -52,6 +37,11 @@ static const char *write_word(nevh__writer *w, const char *word, size_t length,
                     m->lanes    ? m->lanes->call
                     : m->scalar ? ""
                                 : "lane_",
+                    (int)bytes, after + 1);
+        after += bytes + 2;
+    } else if (is(word, length, "NEVH__L") || is(word, length, "NEVH__H")) {
+        size_t bytes = strcspn(after, ")") - 1; /* NEVH__L(asinh) */
+        nevh__write(w, "%s%.*s", word[length - 1] == 'H' ? "nevh_" : "",
                     (int)bytes, after + 1);
         after += bytes + 2;
     } else if (is(word, length, "NEVH__G"))
@@ -130,7 +120,7 @@ void nevh__write_operation(nevh__writer *w, unsigned operation,
     const char *text = texts[operation][part];
     bool calls = m->scalar && strstr(text, "NEVH__F(");
     nevh__write(w, "    %s %s = ", m->lanes ? m->lanes->type : "double", to);
-    if (!m->lanes || (!calls && !is_lanewise(operation))) {
+    if (!m->lanes || (!calls && !nevh__operation_of(operation)->lanewise)) {
         write_text(w, text, m);
         nevh__write(w, ";\n");
         return;

@@ -35,12 +35,15 @@ static int out_of_memory(const reader *r) {
 
 /* NULL: its series is known. */
 static const char *why_not(unsigned operation) {
-    if (!nevh__operation_is_smooth(operation))
+    switch (nevh__operation_of(operation)->kind) {
+    case NEVH__KIND_KINK:
         return "is not analytic, so that its derivatives say nothing about it "
                "elsewhere";
-    return nevh__operation_is_special(operation)
-               ? "is one whose recurrence is not known here"
-               : NULL;
+    case NEVH__KIND_SPECIAL:
+        return "is one whose recurrence is not known here";
+    default:
+        return NULL;
+    }
 }
 
 static int refuse_operation(const reader *r, const nevh_term *term,
@@ -81,47 +84,12 @@ static int operand(const reader *r, const nevh_term *term, size_t instance,
     }
 }
 
-static int power(nevh__graph *g, int a, int b) {
-    nevh__wide c;
-    if (nevh__graph_is_number(g, b, &c))
-        return nevh__graph_power(g, a, c);
-    return nevh__graph_call(
-        g, NEVH__EXP,
-        nevh__graph_multiply(g, b, nevh__graph_call(g, NEVH__LOG, a, -1)), -1);
-}
-
-/* sin and cos of a number are two operations. */
-static nevh__wide number_of(unsigned operation, nevh__wide x, nevh__wide y) {
-    return nevh__operation_wide(
-        operation == NEVH__SINCOS ? NEVH__SIN : operation, x, y);
-}
-
+/* sin and cos of one argument are two operations. */
 static int operate(nevh__graph *g, unsigned operation, int a, int b) {
-    nevh__wide x, y;
-    if (nevh__graph_is_number(g, a, &x) && nevh__graph_is_number(g, b, &y))
-        return nevh__graph_number(g, number_of(operation, x, y));
-    switch (operation) {
-    case NEVH__ADD:
-        return nevh__graph_add(g, a, b);
-    case NEVH__SUBTRACT:
-        return nevh__graph_add(g, a, nevh__graph_scale(g, -1, b));
-    case NEVH__MULTIPLY:
-        return nevh__graph_multiply(g, a, b);
-    case NEVH__DIVIDE:
-        return nevh__graph_multiply(g, a, nevh__graph_invert(g, b));
-    case NEVH__POWER:
-        return power(g, a, b);
-    case NEVH__NEGATE:
-        return nevh__graph_scale(g, -1, a);
-    case NEVH__SQUARE:
-        return nevh__graph_multiply(g, a, a);
-    case NEVH__CUBE:
-        return nevh__graph_multiply(g, a, nevh__graph_multiply(g, a, a));
-    case NEVH__SINCOS:
-        return nevh__graph_call(g, NEVH__SIN, a, -1);
-    default:
-        return nevh__graph_call(g, (nevh__tape_operation)operation, a, b);
-    }
+    return nevh__graph_apply(
+        g,
+        operation == NEVH__SINCOS ? NEVH__SIN : (nevh__tape_operation)operation,
+        a, b);
 }
 
 /* Whether the operation has a kink that series can begin after. */

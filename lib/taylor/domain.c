@@ -165,25 +165,10 @@ bool nevh__domain_is_closed(const nevh__recurrence *r, size_t edge) {
 void nevh__domain_words(const nevh__recurrence *r, size_t edge, char text[],
                         size_t room) {
     const nevh__edge *e = &r->edges[edge];
-    static const char *const what[] = {
-        [NEVH__SQRT] = "sqrt(...), whose argument reaches 0,",
-        [NEVH__POWER] =
-            "a power that is no whole number, whose base reaches 0,",
-        [NEVH__HYPOT] = "hypot(...), both of whose arguments reach 0,",
-        [NEVH__CBRT] = "cbrt(...), whose argument reaches 0,",
-        [NEVH__LOG] = "log(...), whose argument reaches 0,",
-        [NEVH__LOG10] = "log10(...), whose argument reaches 0,",
-        [NEVH__ASIN] = "asin(...), whose argument reaches 1 or -1,",
-        [NEVH__ACOS] = "acos(...), whose argument reaches 1 or -1,",
-        [NEVH__ATANH] = "atanh(...), whose argument reaches 1 or -1,",
-        [NEVH__ACOSH] = "acosh(...), whose argument reaches 1,",
-        [NEVH__ATAN2] = "atan2(...), which jumps where its direction is that "
-                        "of the negative axis,",
-        [NEVH__TAN] = "a function of tan(...), which has a pole there,",
-        [NEVH__DIVIDE] = "a function of a quotient, which has a pole there,"};
     snprintf(text, room,
              "%s%s%s%s is not analytic there, and a series knows "
              "nothing of what follows",
-             what[e->function], e->effect ? " in effect \"" : "",
-             e->effect ? e->effect : "", e->effect ? "\"" : "");
+             nevh__operation_of(e->function)->at_edge,
+             e->effect ? " in effect \"" : "", e->effect ? e->effect : "",
+             e->effect ? "\"" : "");
 }

@@ -62,16 +62,6 @@ static void add(nevh__graph *g, nevh__graph_edge e) {
     g->edges[g->n_edges++] = e;
 }
 
-static int square(nevh__graph *g, int a) {
-    return nevh__graph_multiply(g, a, a);
-}
-
-/* 1 - a^2 */
-static int inside_one(nevh__graph *g, int a) {
-    return nevh__graph_add(g, nevh__graph_number(g, 1),
-                           nevh__graph_scale(g, -1, square(g, a)));
-}
-
 /* The power that an operation is of one base, if it is: 0, else. */
 static double power_of(const nevh__graph *g, unsigned operation, int a, int b,
                        int *base) {
@@ -120,22 +110,11 @@ static void watch_steep(nevh__graph *g, unsigned operation, int a, int b,
                           .effect = effect};
     if (a < 0 || b < 0)
         return;
-    switch (operation) {
-    case NEVH__EXP:
-    case NEVH__SINH:
-    case NEVH__COSH:
-    case NEVH__TANH:
-        break;
-    case NEVH__POWER:
-        if (nevh__graph_is_number(g, b, NULL))
-            return;
+    if (operation == NEVH__POWER && !nevh__graph_is_number(g, b, NULL)) {
         e.function = NEVH__EXP;
-        e.node =
-            nevh__graph_multiply(g, b, nevh__graph_call(g, NEVH__LOG, a, -1));
-        break;
-    default:
+        e.node = nevh__graph_build(g, "b a log *", a, b);
+    } else if (!nevh__operation_of(operation)->steep)
         return;
-    }
     add(g, e);
 }
 
@@ -149,38 +128,16 @@ void nevh__graph_watch(nevh__graph *g, unsigned operation, int a, int b,
     watch_steep(g, operation, a, b, effect);
     if (a >= 0 && b >= 0)
         watch_power(g, operation, a, b, effect);
-    switch (operation) {
-    case NEVH__SQRT:
-        e.strict = false;
-        e.node = a;
-        break;
-    case NEVH__POWER:
+    const nevh__operation_traits *f = nevh__operation_of(operation);
+    if (f->edge) {
+        e.strict = !f->touches;
+        e.node = nevh__graph_build(g, f->edge, a, b);
+    } else if (operation == NEVH__POWER) {
         e.strict = !nevh__graph_is_number(g, b, NULL);
         e.node = is_whole(g, b) ? -1 : a;
-        break;
-    case NEVH__HYPOT:
-        e.strict = false;
-        e.node = nevh__graph_add(g, square(g, a), square(g, b));
-        break;
-    case NEVH__CBRT:
-    case NEVH__LOG:
-    case NEVH__LOG10:
-        e.node = a;
-        break;
-    case NEVH__ASIN:
-    case NEVH__ACOS:
-    case NEVH__ATANH:
-        e.node = inside_one(g, a);
-        break;
-    case NEVH__ACOSH:
-        e.node = nevh__graph_add(g, a, nevh__graph_number(g, -1));
-        break;
-    case NEVH__ATAN2:
+    } else if (operation == NEVH__ATAN2) {
         e.node = a;
         e.also = b;
-        break;
-    default:
-        return;
     }
     add(g, e);
 }
@@ -243,13 +200,14 @@ void nevh__graph_watch_poles(nevh__graph *g, const char *effect) {
         const nevh__graph_node x = g->nodes[i];
         bool tangent = x.kind == NEVH__GRAPH_CALL;
         if (mark[i] & SEEN && has_pole(&x))
-            add(g, (nevh__graph_edge){
-                       .node = tangent ? nevh__graph_call(g, NEVH__COS, x.a, -1)
-                                       : x.a,
-                       .also = -1,
-                       .strict = true,
-                       .function = tangent ? NEVH__TAN : NEVH__DIVIDE,
-                       .effect = effect});
+            add(g,
+                (nevh__graph_edge){
+                    .node = tangent ? nevh__graph_apply(g, NEVH__COS, x.a, x.a)
+                                    : x.a,
+                    .also = -1,
+                    .strict = true,
+                    .function = tangent ? NEVH__TAN : NEVH__DIVIDE,
+                    .effect = effect});
     }
     free(mark);
 }

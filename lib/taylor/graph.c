@@ -192,7 +192,7 @@ int nevh__graph_multiply(nevh__graph *g, int a, int b) {
     return operation(g, NEVH__GRAPH_MULTIPLY, 0, a < b ? a : b, a < b ? b : a);
 }
 
-int nevh__graph_invert(nevh__graph *g, int a) {
+static int invert(nevh__graph *g, int a) {
     nevh__wide x;
     int base;
     if (bad(g, a, a))
@@ -201,7 +201,7 @@ int nevh__graph_invert(nevh__graph *g, int a) {
         return nevh__graph_number(g, 1 / x);
     if (at(g, a)->kind == NEVH__GRAPH_SCALE) {
         x = at(g, a)->number;
-        return nevh__graph_scale(g, 1 / x, nevh__graph_invert(g, at(g, a)->a));
+        return nevh__graph_scale(g, 1 / x, invert(g, at(g, a)->a));
     }
     nevh__wide c = exponent_of(g, a, &base);
     if (base != a)
@@ -230,7 +230,7 @@ int nevh__graph_power(nevh__graph *g, int a, nevh__wide c) {
     if (whole && near > 0 && near <= MOST_MULTIPLIED)
         return whole_power(g, a, (long)near);
     if (c == -1)
-        return nevh__graph_invert(g, a);
+        return invert(g, a);
     double inner = (double)at(g, a)->number; /* a whole one: of either sign */
     if (at(g, a)->kind == NEVH__GRAPH_POWER && !whole && inner != rint(inner))
         return nevh__graph_power(g, at(g, a)->a, at(g, a)->number * c);
@@ -238,15 +238,6 @@ int nevh__graph_power(nevh__graph *g, int a, nevh__wide c) {
 }
 
 /* Functions and their derivatives. */
-
-static int one_plus(nevh__graph *g, nevh__wide c, int x) {
-    return nevh__graph_add(g, nevh__graph_number(g, 1),
-                           nevh__graph_scale(g, c, x));
-}
-
-static int square(nevh__graph *g, int x) {
-    return nevh__graph_multiply(g, x, x);
-}
 
 static int raw_call(nevh__graph *g, int function, int a, int b) {
     return node(g, (nevh__graph_node){.kind = NEVH__GRAPH_CALL,
@@ -256,118 +247,88 @@ static int raw_call(nevh__graph *g, int function, int a, int b) {
                                       .slope = -1});
 }
 
-static int call_of(nevh__graph *g, nevh__tape_operation f, int a) {
-    return nevh__graph_call(g, f, a, -1);
+static int build_number(void *data, double x) {
+    return nevh__graph_number(data, x);
 }
 
-/* The derivative of y = f(a). */
-static int slope_of(nevh__graph *g, nevh__tape_operation f, int a, int y) {
-    switch (f) {
-    case NEVH__SIN:
-        return call_of(g, NEVH__COS, a);
-    case NEVH__COS:
-        return nevh__graph_scale(g, -1, call_of(g, NEVH__SIN, a));
-    case NEVH__TAN:
-        return one_plus(g, 1, square(g, y));
-    case NEVH__ASIN:
-        return nevh__graph_power(g, one_plus(g, -1, square(g, a)), -0.5L);
-    case NEVH__ACOS:
-        return nevh__graph_scale(
-            g, -1, nevh__graph_power(g, one_plus(g, -1, square(g, a)), -0.5L));
-    case NEVH__ATAN:
-        return nevh__graph_invert(g, one_plus(g, 1, square(g, a)));
-    case NEVH__SINH:
-        return call_of(g, NEVH__COSH, a);
-    case NEVH__COSH:
-        return call_of(g, NEVH__SINH, a);
-    case NEVH__TANH:
-        return one_plus(g, -1, square(g, y));
-    case NEVH__ASINH:
-        return nevh__graph_power(g, one_plus(g, 1, square(g, a)), -0.5L);
-    case NEVH__ACOSH: {
-        int below = nevh__graph_add(g, a, nevh__graph_number(g, -1));
-        return nevh__graph_multiply(
-            g, nevh__graph_power(g, below, -0.5L),
-            nevh__graph_power(g, one_plus(g, 1, a), -0.5L));
-    }
-    case NEVH__ATANH:
-        return nevh__graph_invert(g, one_plus(g, -1, square(g, a)));
-    case NEVH__EXP:
-        return y;
-    case NEVH__LOG:
-        return nevh__graph_invert(g, a);
-    default: /* LOG10 */
-        return nevh__graph_invert(
-            g, nevh__graph_multiply(
-                   g, a, call_of(g, NEVH__LOG, nevh__graph_number(g, 10))));
-    }
+static int build_operation(void *data, nevh__tape_operation f, int a, int b) {
+    return nevh__graph_apply(data, f, a, b);
 }
 
-/* Of x and y: the two halves have one argument each, and 1/r^2 in common. */
-static int angle(nevh__graph *g, int y, int x) {
-    int inverse =
-        nevh__graph_invert(g, nevh__graph_add(g, square(g, x), square(g, y)));
-    int by_y = raw_call(g, NEVH__ATAN2, y, x);
-    int by_x = raw_call(g, NEVH__NOTHING, x, y);
-    int slope_y = nevh__graph_multiply(g, x, inverse);
-    int slope_x = nevh__graph_scale(g, -1, nevh__graph_multiply(g, y, inverse));
+static int build(nevh__graph *g, const char *formula, const int of[3]) {
+    const nevh__algebra nodes = {g, build_number, build_operation};
+    return nevh__operation_build(formula, of, &nodes);
+}
+
+static int slope_of(nevh__graph *g, nevh__derivative_text by, const int of[3]) {
+    int top = build(g, by.top, of);
+    return by.bottom
+               ? nevh__graph_multiply(
+                     g, top, invert(g, build(g, by.bottom, of)))
+               : top;
+}
+
+/* Two halves that have one argument each. */
+static int call_of_two(nevh__graph *g, nevh__tape_operation f, int a, int b) {
+    const nevh__operation_traits *known = nevh__operation_of(f);
+    int by_a = raw_call(g, f, a, b), by_b = raw_call(g, NEVH__NOTHING, b, a);
+    const int of[3] = {a, b, -1};
+    int slope_a = slope_of(g, known->by_a, of);
+    int slope_b = slope_of(g, known->by_b, of);
     if (g->failed)
         return -1;
-    g->nodes[by_y].slope = slope_y;
-    g->nodes[by_x].slope = slope_x;
-    return nevh__graph_add(g, by_y, by_x);
+    g->nodes[by_a].slope = slope_a;
+    g->nodes[by_b].slope = slope_b;
+    return nevh__graph_add(g, by_a, by_b);
 }
 
-/* A constant between its jumps. */
-static int stair(nevh__graph *g, nevh__tape_operation f, int a) {
-    int zero = nevh__graph_number(g, 0), y = raw_call(g, f, a, -1);
-    if (g->failed)
-        return -1;
-    g->nodes[y].slope = zero;
-    return y;
-}
-
-/* Of other functions with kinks, from a sign or a whole part. */
-static int broken(nevh__graph *g, nevh__tape_operation f, int a, int b) {
-    if (f == NEVH__ABS)
-        return nevh__graph_multiply(g, a, stair(g, NEVH__SIGN, a));
-    int apart = nevh__graph_add(g, a, nevh__graph_scale(g, -1, b));
-    if (f == NEVH__MOD) {
-        int ratio = nevh__graph_multiply(g, a, nevh__graph_invert(g, b));
-        int whole = nevh__graph_multiply(g, b, stair(g, NEVH__FLOOR, ratio));
-        return nevh__graph_add(g, a, nevh__graph_scale(g, -1, whole));
-    }
-    int half = nevh__graph_scale(g, 0.5L, broken(g, NEVH__ABS, apart, -1));
-    int mean = nevh__graph_scale(g, 0.5L, nevh__graph_add(g, a, b));
-    return nevh__graph_add(
-        g, mean, f == NEVH__MAX ? half : nevh__graph_scale(g, -1, half));
-}
-
-int nevh__graph_call(nevh__graph *g, nevh__tape_operation f, int a, int b) {
-    if (bad(g, a, a))
-        return -1;
-    if (f == NEVH__SIGN || f == NEVH__FLOOR)
-        return stair(g, f, a);
-    if (f == NEVH__ABS || f == NEVH__MIN || f == NEVH__MAX || f == NEVH__MOD)
-        return broken(g, f, a, b);
-    if (f == NEVH__SQRT)
-        return nevh__graph_power(g, a, 0.5L);
-    if (f == NEVH__ATAN2)
-        return angle(g, a, b);
-    if (f == NEVH__HYPOT)
-        return nevh__graph_power(
-            g, nevh__graph_add(g, square(g, a), square(g, b)), 0.5L);
+static int call(nevh__graph *g, nevh__tape_operation f, int a) {
     int y = raw_call(g, f, a, -1);
     if (y < 0 || g->nodes[y].slope >= 0)
         return y;
     g->nodes[y].slope = y; /* while it is being made: sine and cosine have each
                               other's */
-    int slope = f == NEVH__CBRT
-                    ? nevh__graph_scale(g, (nevh__wide)1 / 3,
-                                        nevh__graph_invert(g, square(g, y)))
-                    : slope_of(g, f, a, y);
+    int slope = slope_of(g, nevh__operation_of(f)->by_a, (int[]){a, a, y});
     if (g->failed)
         return -1;
     g->nodes[y].slope = slope;
     return y;
+}
+
+static int power(nevh__graph *g, int a, int b) {
+    nevh__wide c;
+    if (nevh__graph_is_number(g, b, &c))
+        return nevh__graph_power(g, a, c);
+    return build(g, "b a log * exp", (int[]){a, b, -1});
+}
+
+int nevh__graph_build(nevh__graph *g, const char *formula, int a, int b) {
+    return build(g, formula, (int[]){a, b, -1});
+}
+
+int nevh__graph_apply(nevh__graph *g, nevh__tape_operation f, int a, int b) {
+    const nevh__operation_traits *known = nevh__operation_of(f);
+    nevh__wide x, y;
+    if (bad(g, a, b))
+        return -1;
+    if (nevh__graph_is_number(g, a, &x) && nevh__graph_is_number(g, b, &y))
+        return nevh__graph_number(g, nevh__operation_wide(f, x, y));
+    switch (f) {
+    case NEVH__ADD:
+        return nevh__graph_add(g, a, b);
+    case NEVH__SUBTRACT:
+        return nevh__graph_add(g, a, nevh__graph_scale(g, -1, b));
+    case NEVH__MULTIPLY:
+        return nevh__graph_multiply(g, a, b);
+    case NEVH__DIVIDE:
+        return nevh__graph_multiply(g, a, invert(g, b));
+    case NEVH__POWER:
+        return power(g, a, b);
+    case NEVH__NEGATE:
+        return nevh__graph_scale(g, -1, a);
+    default:
+        return known->as           ? nevh__graph_build(g, known->as, a, b)
+               : known->arity == 2 ? call_of_two(g, f, a, b)
+                                   : call(g, f, a);
+    }
 }

@@ -80,11 +80,12 @@ int nevh__graph_variable(nevh__graph *, size_t at);
 int nevh__graph_add(nevh__graph *, int a, int b);
 int nevh__graph_scale(nevh__graph *, nevh__wide, int a);
 int nevh__graph_multiply(nevh__graph *, int a, int b);
-int nevh__graph_invert(nevh__graph *, int a);
 int nevh__graph_power(nevh__graph *, int a, nevh__wide exponent);
-/* An analytic function of one argument, atan2, hypot, or one that has kinks:
-   series then hold between these. */
-int nevh__graph_call(nevh__graph *, nevh__tape_operation, int a, int b);
+/* Any operation whose derivatives are known.  Of kinks series hold between these.
+   b is a where there is one argument. */
+int nevh__graph_apply(nevh__graph *, nevh__tape_operation, int a, int b);
+/* A formula of operations_private.h. */
+int nevh__graph_build(nevh__graph *, const char *formula, int a, int b);
 /* Adds what an operation on nodes asks for; its result is another node. */
 void nevh__graph_watch(nevh__graph *, unsigned operation, int a, int b,
                        const char *effect);

@@ -128,47 +128,25 @@ NEVH__INLINE void add_summands(const series *s, const nevh__batch *b) {
     }
 }
 
-static real function(const nevh__batch *b, real x, real second) {
-    switch (b->function) {
-    case NEVH__SIN:
-        return FUNCTION(sin)(x);
-    case NEVH__COS:
-        return FUNCTION(cos)(x);
-    case NEVH__TAN:
-        return FUNCTION(tan)(x);
-    case NEVH__ASIN:
-        return FUNCTION(asin)(x);
-    case NEVH__ACOS:
-        return FUNCTION(acos)(x);
-    case NEVH__ATAN:
-        return FUNCTION(atan)(x);
-    case NEVH__ATAN2:
-        return FUNCTION(atan2)(x, second);
-    case NEVH__SINH:
-        return FUNCTION(sinh)(x);
-    case NEVH__COSH:
-        return FUNCTION(cosh)(x);
-    case NEVH__TANH:
-        return FUNCTION(tanh)(x);
-    case NEVH__ASINH:
-        return FUNCTION(asinh)(x);
-    case NEVH__ACOSH:
-        return FUNCTION(acosh)(x);
-    case NEVH__ATANH:
-        return FUNCTION(atanh)(x);
-    case NEVH__EXP:
-        return FUNCTION(exp)(x);
-    case NEVH__LOG:
-        return FUNCTION(log)(x);
-    case NEVH__LOG10:
-        return FUNCTION(log10)(x);
-    case NEVH__CBRT:
-        return FUNCTION(cbrt)(x);
+/* Functions that a graph calls; others are made of them. */
+#define CASE(kind, identifier, name, arity, value, by_a, by_b, ...)            \
+    CASE_##kind(identifier, value)
+#define CASE_ARITHMETIC(identifier, value)
+#define CASE_SPECIAL(identifier, value)
+#define CASE_KINK(identifier, value)
+#define CASE_FUNCTION(identifier, value)                                       \
+    case NEVH__##identifier:                                                   \
+        return value;
+#define NEVH__F(f) FUNCTION(f)
+#define NEVH__L(f) FUNCTION(f)
+static real function(const nevh__batch *batch, real a, real b) {
+    switch (batch->function) {
+        NEVH__OPERATIONS(CASE)
     case NEVH__SIGN:
-        return (real)((x > 0) - (x < 0));
+        return (real)((a > 0) - (a < 0));
     case NEVH__FLOOR:
-        return FUNCTION(floor)(x);
-    default:
+        return FUNCTION(floor)(a);
+    default: /* NEVH__NOTHING */
         return 0;
     }
 }
