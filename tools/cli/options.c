@@ -24,6 +24,7 @@
 #define SETTINGS               KIND("settings", read_settings, 0)
 #define CHOICE(type, member)   KIND("choice", read_choice, MEMBER(type, member))
 #define TAKEN(kind, reader)    KIND(kind, reader, 0)
+#define PLOT_WORD(id, name)    "|" name
 static_assert(sizeof(plot_kind) == sizeof(unsigned),
               "read_choice writes these");
 
@@ -141,8 +142,7 @@ const option_row option_rows[] = {
      "of run: phase (the default), time, energy, configuration or animation (a "
      ".gif of that); of compare "
      "and cost: order, errors against dt with slopes",
-     .first = PLOT_PHASE,
-     .words = "phase|energy|configuration|time|order|animation"},
+     .first = PLOT_PHASE, .words = &(PLOT_KINDS(PLOT_WORD))[1]},
     {"columns", "A,B:C", TEXT("columns", columns), NULL,
      "of fit: the columns of the data to use; of run: what --plot-kind time or "
      "phase draws: a panel each, names joined by : in one; t, coordinates, "

@@ -182,14 +182,18 @@ extern const char scene_sample[];
 
 /* options.c: the command line. */
 typedef enum { MATCH_SCENE, MATCH_STEPS, MATCH_WORK } matching;
+/* What --plot-kind names. */
+#define PLOT_KINDS(X)                                                          \
+    X(PHASE, "phase")                                                          \
+    X(ENERGY, "energy")                                                        \
+    X(CONFIGURATION, "configuration")                                          \
+    X(TIME, "time")                                                            \
+    X(ORDER, "order")                                                          \
+    X(ANIMATION, "animation")
+#define PLOT_KIND(id, name) PLOT_##id,
 typedef enum {
     PLOT_USUAL, /* the command's own */
-    PLOT_PHASE,
-    PLOT_ENERGY,
-    PLOT_CONFIGURATION,
-    PLOT_TIME,
-    PLOT_ORDER,
-    PLOT_ANIMATION
+    PLOT_KINDS(PLOT_KIND)
 } plot_kind;
 typedef struct {
     list operands, given;                  /* the names of the options given */

@@ -201,17 +201,28 @@ static plot *plot_energy(run_picture *picture) {
 
 /* Kinds. */
 
+static const struct {
+    plot *(*draw)(run_picture *);
+    bool columns; /* draws those of --columns, and --data */
+    bool picture; /* draws the scene's [picture] */
+} kinds[] = {
+    [PLOT_USUAL] = {plot_phase, .columns = true},
+    [PLOT_PHASE] = {plot_phase, .columns = true},
+    [PLOT_TIME] = {plot_time, .columns = true},
+    [PLOT_CONFIGURATION] = {plot_configuration, .picture = true},
+    [PLOT_ANIMATION] = {plot_animation, .picture = true},
+    [PLOT_ENERGY] = {plot_energy},
+};
+
 static int check_kind(const options *o, const plan *p) {
-    bool configuration =
-        o->plot.kind == PLOT_CONFIGURATION || o->plot.kind == PLOT_ANIMATION;
-    bool columns = o->plot.kind == PLOT_TIME || o->plot.kind == PLOT_PHASE ||
-                   o->plot.kind == PLOT_USUAL;
+    bool columns = kinds[o->plot.kind].columns;
     if (o->fit.data && plot_wanted(o) && !columns)
         return tool_refuse("--data is drawn over --plot-kind time or phase");
     if (o->columns && !(plot_wanted(o) && columns))
         return tool_refuse("--columns is for --plot with --plot-kind time or "
                            "phase");
-    if (plot_wanted(o) && configuration && nevh_scene_part_count(p->scene) == 0)
+    if (plot_wanted(o) && kinds[o->plot.kind].picture &&
+        nevh_scene_part_count(p->scene) == 0)
         return tool_refuse("%s: the scene has no [picture] to plot, as: bob = "
                            "x, y",
                            p->name);
@@ -242,13 +253,6 @@ static int worst_status(const run_picture *picture) {
 
 int run_plot(const options *o, const plan *p, const char *integrator,
              const row_times *rows) {
-    static plot *(*const draw[])(run_picture *) = {
-        [PLOT_USUAL] = plot_phase,
-        [PLOT_PHASE] = plot_phase,
-        [PLOT_CONFIGURATION] = plot_configuration,
-        [PLOT_ANIMATION] = plot_animation,
-        [PLOT_ENERGY] = plot_energy,
-        [PLOT_TIME] = plot_time};
     run_picture is = {.options = o,
                       .plan = *p,
                       .orbits = orbits_new(o, p, integrator),
@@ -258,7 +262,7 @@ int run_plot(const options *o, const plan *p, const char *integrator,
     if (o->fit.data && measured_read(&is.data, p, o, NULL))
         return TOOL_USAGE;
     measured_bound(&is.data, &is.plan, o);
-    plot *to = draw[o->plot.kind](&is);
+    plot *to = kinds[o->plot.kind].draw(&is);
     int status = to ? plot_write(to, o) : TOOL_USAGE;
     if (!status) {
         plot_say_written(o, &is.orbits.item->plan, is.orbits.item->integrator,
