@@ -5,9 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define COLUMNS(t, names)                                                      \
-    table_columns(t, names, sizeof(names) / sizeof *(names))
-
 static const char *fits(const nevh_integrator *s) {
     unsigned needs = nevh_integrator_needs(s);
     if (needs & NEVH_QUADRATIC_KINETIC)
@@ -39,12 +36,10 @@ static void add_integrator(table *t, const nevh_integrator *s, bool all) {
 }
 
 static int list_integrators(table *t, const options *o) {
-    static const char *const names[] = {
-        "order",        "sym-\nplectic", "sym-\nmetric", "ex-\nplicit",
-        "energy\nkept", "adap-\ntive",   "gra-\ndients", "needs H ="};
     table_column(t, "integrator");
     table_key(t);
-    COLUMNS(t, names);
+    table_titles(t, "order,sym-\nplectic,sym-\nmetric,ex-\nplicit,"
+                    "energy\nkept,adap-\ntive,gra-\ndients,needs H =");
     table_break(t);
     if (o->all) {
         table_column(t, "native");
@@ -57,9 +52,8 @@ static int list_integrators(table *t, const options *o) {
 }
 
 static int list_gradients(table *t, const options *o) {
-    static const char *const names[] = {"gradient", "order", "from"};
     (void)o;
-    COLUMNS(t, names);
+    table_titles(t, "gradient,order,from");
     for (size_t i = 0; nevh_gradients()[i]; i++) {
         const nevh_gradient *g = nevh_gradients()[i];
         int order = nevh_gradient_order(g);
@@ -77,10 +71,8 @@ static int list_gradients(table *t, const options *o) {
 }
 
 static int list_models(table *t, const options *o) {
-    static const char *const names[] = {"model", "degrees of\nfreedom",
-                                        "title"};
     (void)o;
-    COLUMNS(t, names);
+    table_titles(t, "model,degrees of\nfreedom,title");
     for (size_t i = 0; nevh_models()[i]; i++) {
         const nevh_model *m = nevh_models()[i];
         table_text(t, m->name);
@@ -91,10 +83,8 @@ static int list_models(table *t, const options *o) {
 }
 
 static int list_scenes(table *t, const options *o) {
-    static const char *const titles[] = {"scene", "degrees of\nfreedom",
-                                         "title"};
     list names = {0}, files = {0};
-    COLUMNS(t, titles);
+    table_titles(t, "scene,degrees of\nfreedom,title");
     int status = TOOL_OK;
     if (o->all)
         table_column(t, "source");

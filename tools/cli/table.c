@@ -54,11 +54,6 @@ static void add(table *t, table_kind k, const char *text) {
     t->begins = false;
 }
 
-void table_columns(table *t, const char *const titles[], size_t count) {
-    for (size_t i = 0; i < count; i++)
-        table_column(t, titles[i]);
-}
-
 void table_titles(table *t, const char *titles) {
     list each = {0};
     list_split(&each, titles);

@@ -148,8 +148,7 @@ table *table_new(void);
 /* The next column; lines of the title are separated by \n, parts of a word by
    -\n.  CSV and JSON have it on one line. */
 void table_column(table *, const char *title);
-void table_columns(table *, const char *const titles[], size_t count);
-void table_titles(table *, const char *titles); /* with commas */
+void table_titles(table *, const char *titles); /* several, with commas */
 /* The next column and those after it may go below, where they are more than fit
    beside each other. */
 void table_break(table *);

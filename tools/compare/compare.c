@@ -177,25 +177,22 @@ static table *shown(const plan *p, const row_list *r) {
     table *t = table_new();
     const char *unit = nevh_scene_label(p->scene, "t");
     char *dt = text_print(*unit ? "dt/%s" : "dt%s", unit);
-    static const char *const first[] = {"integrator", "order", "sympl."};
-    static const char *const errors[] = {
-        "max\nenergy\nerror", "drift\nover\nthe run", "state\nerror"};
-    static const char *const last[] = {"H\nevals", "ms", "energy"};
-    table_column(t, first[0]);
+    table_column(t, "integrator");
     table_key(t);
-    table_columns(t, first + 1, sizeof first / sizeof *first - 1);
+    table_titles(t, "order,sympl.");
     if (p->gradients.count > 1) {
         table_column(t, "gradient");
         table_key(t);
     }
     table_column(t, dt);
     table_key(t);
-    table_columns(t, errors, sizeof errors / sizeof *errors);
+    table_titles(t, "max\nenergy\nerror,drift\nover\nthe run,"
+                    "state\nerror");
     if (p->observable)
         table_column(t, "observable\nerror");
     if (p->dts > 1)
         table_column(t, "order\nseen");
-    table_columns(t, last, sizeof last / sizeof *last);
+    table_titles(t, "H\nevals,ms,energy");
     if (p->diagnostics)
         table_break(t);
     diagnostics_columns(t, p, true);

@@ -116,12 +116,8 @@ static bool sigma_known(const job *j) {
 }
 
 static void add_columns(const job *j, table *t, bool is_table) {
-    static const char *const shown[] = {"parameter", "value", "error",
-                                        "95 % from", "to",    "started at"};
-    if (is_table)
-        table_columns(t, shown, sizeof shown / sizeof *shown);
-    else
-        table_titles(t, fit_command.columns);
+    table_titles(t, is_table ? "parameter,value,error,95 % from,to,started at"
+                             : fit_command.columns);
     for (size_t i = 0; i < j->fit.count; i++) {
         char *title = text_print(is_table ? "corr.\n%s" : "correlation_%s",
                                  j->fit.item[i].name);

@@ -233,11 +233,9 @@ static void show_bundle(table *t, const case_results *c, hard_verdict v,
 }
 
 static table *shown(const suite *all) {
-    static const char *const names[] = {
-        "case", "asked",       "omega\ndt", "verdict",
-        "rows", "error\nfrom", "\nto",      "the worst of them"};
     table *t = table_new();
-    table_columns(t, names, sizeof names / sizeof *names);
+    table_titles(t, "case,asked,omega\ndt,verdict,rows,error\nfrom,"
+                    "\nto,the worst of them");
     table_below(t);
     for (size_t i = 0; i < all->n_cases; i++) {
         table_group(t);

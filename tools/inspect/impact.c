@@ -263,21 +263,6 @@ static void say_chaos(const plan *p, list *words) {
     free(found.failure);
 }
 
-static void columns(table *t) {
-    static const char *const titles[] = {"effect",
-                                         "state",
-                                         "integrator",
-                                         "difference\nat the end",
-                                         "largest\ndifference",
-                                         "1 %\nat t =",
-                                         "energy\nat the end",
-                                         "work\nratio",
-                                         "time\nratio",
-                                         "rules\nout"};
-    for (size_t i = 0; i < sizeof titles / sizeof *titles; i++)
-        table_column(t, titles[i]);
-}
-
 /* returns  TOOL_FAILED where no effect could be compared, since runs failed */
 static int add_all(const options *o, plan *p, page *result, plot **to) {
     size_t count = nevh_system_effect_count(p->system);
@@ -329,7 +314,10 @@ int impact(const options *o, plan *p) {
     list_add(&result.before,
              "differences of the state are divided by the range of each "
              "variable, those of the energy by energy_scale");
-    columns(result.table);
+    table_titles(result.table,
+                 "effect,state,integrator,difference\nat the end,"
+                 "largest\ndifference,1 %\nat t =,energy\nat the end,"
+                 "work\nratio,time\nratio,rules\nout");
     int status = add_all(o, p, &result, &to);
     if (!o->quiet)
         list_add(

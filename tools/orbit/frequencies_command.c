@@ -388,12 +388,10 @@ static int run_and_analyse(job *j, const options *o, const char *integrator) {
 }
 
 static void make_table(job *j, const options *o) {
-    static const char *const shown[] = {
-        "integrator", "observable", "rank",   "frequency", "error",
-        "resolution", "drift",      "period", "amplitude", "phase"};
     j->table = table_new();
     if (o->format == FORMAT_TABLE)
-        table_columns(j->table, shown, sizeof shown / sizeof *shown);
+        table_titles(j->table, "integrator,observable,rank,frequency,error,"
+                               "resolution,drift,period,amplitude,phase");
     else
         table_titles(j->table, frequencies_command.columns);
 }

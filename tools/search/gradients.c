@@ -94,14 +94,11 @@ static void add_all(page *result, findings *f, bool for_people) {
 }
 
 static table *new_table(bool for_people) {
-    static const char *const shown[] = {
-        "gradient",      "half-\nspread", "largest\nerror",
-        "trunca-\ntion", "round-\ning",   "H\nevals",
-        "\nns",          "energy\nerror", "from the\ngradient",
-        "from\nrounding"};
     table *t = table_new();
     if (for_people)
-        table_columns(t, shown, sizeof shown / sizeof *shown);
+        table_titles(t, "gradient,half-\nspread,largest\nerror,"
+                        "trunca-\ntion,round-\ning,H\nevals,\nns,"
+                        "energy\nerror,from the\ngradient,from\nrounding");
     else
         table_titles(t, gradients_command.columns);
     return t;
