@@ -50,7 +50,7 @@ static void set_process(void) {
     gsl_set_error_handler_off();
 }
 
-/* What no command looked after. */
+/* Flushes stdout and reports write errors. */
 static int end_output(int status) {
     if (status != TOOL_USAGE && (fflush(stdout) || ferror(stdout)))
         return tool_refuse("the output cannot be written: %s", strerror(errno));

@@ -10,7 +10,7 @@ extern "C" {
 #endif
 
 /* An orbit in quad precision, by two runs of Taylor series that differ in order
-   and in tolerance: what they have in common is certain.  One thread at a
+   and in tolerance: digits common to both are certain.  One thread at a
    time. */
 typedef struct nevh_certain nevh_certain;
 
@@ -43,18 +43,18 @@ NEVH_API int nevh_certain_go_to(nevh_certain *, double time, long double rest);
 /* Series that both runs took so far. */
 NEVH_API size_t nevh_certain_series(const nevh_certain *);
 
-/* Of coordinate k for k < n, else of momentum k - n, at that time.  Its double,
-   NAN out of range; */
+/* Results at the present time: of coordinate k for k < n, else of momentum k - n. */
+/* The value as a double; NAN out of range. */
 NEVH_API double nevh_certain_value(const nevh_certain *, size_t k);
-/* a bound of the error of all digits that there are: twice the difference of
-   the runs, or rounding; */
+/* A bound of the error of all digits: twice the difference of the two runs, or
+   rounding. */
 NEVH_API double nevh_certain_error(const nevh_certain *, size_t k);
-/* the largest that it was so far, where series began and within them; */
+/* The largest value so far, at the starts of series and within them. */
 NEVH_API double nevh_certain_size(const nevh_certain *, size_t k);
-/* how many digits that leaves, at most those asked for; 0: none; */
+/* The number of certain digits, at most those asked for; 0: none. */
 NEVH_API int nevh_certain_digits(const nevh_certain *, size_t k);
-/* and these, as text, to be freed with free; "0" where no digit is certain.
-   NULL out of range, and when memory is out. */
+/* The certain digits as text, to be freed with free; "0" where there is none.  NULL
+   out of range, and when memory is out. */
 NEVH_API char *nevh_certain_text(const nevh_certain *, size_t k);
 /* number + rest with 30 digits or fewer, to be freed with free; NULL when memory
    is out. */

@@ -85,7 +85,7 @@ typedef struct nevh_field nevh_field;
    cost      of a few thousand values a variable, where steps are chosen by
              trial: some milliseconds for a small system.  Of many
              instances, lanes, or variables of an instance, 64 are tried.  A
-             step given for all costs nothing. */
+             step set by the caller is used unchecked, at no cost. */
 NEVH_API nevh_field *nevh_field_new(const nevh_system *, const nevh_options *);
 NEVH_API void nevh_field_free(nevh_field *); /* NULL is allowed */
 /* The status of planning or of the last call; NEVH_ENOMEM for NULL. */

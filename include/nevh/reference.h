@@ -67,8 +67,8 @@ typedef struct {
                            each has its own */
     double longest; /* step of a run, of either sign: no longer than a few of
                        the steps that are compared with it, so that it sees what
-                       they see; 0: a 128th of the time.  Shorter ones than may
-                       be afforded are not asked for. */
+                       they see; 0: a 128th of the time.  The cost limit
+                       takes precedence. */
     bool finest; /* Taylor series in place of an exact solution whose own error
                     is above 1e-15, where they have a smaller one and can be
                     afforded */

@@ -47,14 +47,15 @@ NEVH_API const char *nevh_stepper_message(const nevh_stepper *);
    returns  NEVH_OK; NEVH_EDOM (a value of H or the new state is not finite),
             NEVH_EMAXITER (the stage equations of an implicit scheme were not
             solved), NEVH_EFAILED (an adaptive scheme would need more than a
-            million substeps, or shorter ones than there are), NEVH_ESTALE,
+            million substeps, or steps below the resolution of a double),
+            NEVH_ESTALE,
             NEVH_EINVAL (h not finite), or the refusal of a stepper that could
             not be planned.  On failure q, p and the stepper's memory are as
             before the step.
 
    A stepper remembers what it last returned (sums of rounding errors, the
    last gradient, a first guess for the stages).  Where q, p or t differ from
-   that, the lane's memory is started afresh: to jump is allowed. */
+   that, the lane's memory is reset: the state may be changed between calls. */
 NEVH_API int nevh_stepper_apply(nevh_stepper *, double t, double h, double q[],
                                 double p[]);
 
@@ -118,39 +119,35 @@ typedef struct {
 NEVH_API char *nevh_stepper_program(nevh_stepper *, const nevh_program *);
 
 /* Whether steps run as native code: H and the scheme written as one C function,
-   compiled and loaded when the stepper was made, or foresaw more of them.  With
-   NEVH_NATIVE_AUTO one orbit does not wait for the compiler: its steps are taken from
-   the formulas until then, and have the same bits.  This function waits for it, and so
-   does nevh_stepper_free.  Only
-   formulas of scenes do, under schemes of nevh_integrator_native with fixed steps, and where nobody
-   asked for the balance of the energy; orbits side by side do if there is a
-   multiple of 8, but not by Nystroem methods, nor with the complex step.
-   Implicit steps take no complex step either; those whose iteration does not
-   converge are taken as others are.  Of nevh_taylor the series are compiled, in
-   all cases.
-   why      out, may be NULL: what is in the way, if they were to ("there is no C
-            compiler: ..."), else ""; the stepper's own, never NULL */
+   compiled and loaded when the stepper was made or nevh_stepper_foresee was
+   called.  With NEVH_NATIVE_AUTO one orbit does not wait for the compiler: until it
+   is done, steps are interpreted, with the same bits.  This function and
+   nevh_stepper_free wait for it.
+   Requires formulas, a scheme with nevh_integrator_native, fixed steps, and
+   nevh_options.balance off.  The width must be 1 or a multiple of 8; Nystroem
+   methods and the complex step require width 1, and implicit schemes take no
+   complex step.  Steps that fail to converge are repeated by the interpreter.
+   Series of nevh_taylor are always compiled.
+   why      out, may be NULL: the reason where compiling was possible but failed
+            ("there is no C compiler: ..."), else ""; owned by the stepper, never
+            NULL */
 NEVH_API bool nevh_stepper_native(const nevh_stepper *, const char **why);
-/* Whether a compiler is at work in the background, and steps are not native yet.
-   Never waits. */
+/* Whether a compiler runs in the background and steps are not native yet.  Does not
+   wait. */
 NEVH_API bool nevh_stepper_compiles(const nevh_stepper *);
-/* Says that a stepper will take more steps than it was told: those that are not
-   compiled are from here on, with NEVH_NATIVE_AUTO, where so many make up for it.
-   steps    nevh_options.steps_foreseen; fewer than before change nothing
-   returns  whether they make up for compiling, and are compiled, or a compiler is
-            at work */
+/* Raises the expected number of steps.  With NEVH_NATIVE_AUTO, a stepper that is not
+   compiled is compiled now if that many steps repay it.
+   steps    as nevh_options.steps_foreseen; fewer than before change nothing
+   returns  whether the steps repay compiling, and are compiled or being compiled */
 NEVH_API bool nevh_stepper_foresee(nevh_stepper *, double steps);
-/* The same of several steppers, some of which may be NULL: compilers work side by
-   side, as many as there are processors, where what they make is kept.  A table of
-   four schemes waits for two compilers in turn on two processors, not for four. */
+/* The same for several steppers, some of which may be NULL.  Compilers run side by
+   side, one a processor, where a cache keeps their results. */
 NEVH_API void nevh_steppers_foresee(nevh_stepper *const[], size_t count,
                                     double steps);
-/* Seconds that compiling would save: about what so many steps take from formulas,
-   each time that what is compiled is used, less the time of the compiler.  Of several
-   steppers that are to be compiled together, or not at all, the sum decides.
-   Nothing is compiled.
-   returns  NAN where steps cannot be compiled, or options.native leaves no
-            choice and they are not compiled */
+/* Seconds that compiling would save: the interpreter's time for so many steps less
+   that of the compiled ones and of the compiler.  The sum decides for several
+   steppers that are compiled together or not at all.  Nothing is compiled.
+   returns  NAN where steps cannot be compiled, or options.native forbids it */
 NEVH_API double nevh_stepper_native_saves(nevh_stepper *, double steps);
 /* Whether a scheme's steps can be compiled at all; NULL: no.  From any thread. */
 NEVH_API bool nevh_integrator_native(const nevh_integrator *);

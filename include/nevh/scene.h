@@ -4,7 +4,8 @@
    A scene is a text file (UTF-8) of sections [scene], [parameters],
    [coordinates], [definitions], [effects], [friction], [invariants],
    [observables], [picture], [sections], [labels], [ensemble], [run], each with lines
-   KEY = VALUE; # begins a comment.  [coordinates] and [effects] there must be.
+   KEY = VALUE; # begins a comment.  [coordinates] and [effects]
+   are required.
    All formulas are checked when the scene is read, also those that only some
    commands ask for.
 
@@ -100,7 +101,7 @@ NEVH_API int nevh_scene_number(nevh_scene *, const char *formula,
    that were set and effects that were switched have what they have now.  Read
    again it is the same scene, to the last bit of its orbits.
    path     of the file that it is for: names of C files are changed to be found
-            from its folder, which there must be; NULL: they stay
+            from that folder, which must exist; NULL: they stay
    returns  text, to be freed with free(); lines end with newlines; NULL when
             memory is out, or the scene was not read */
 NEVH_API char *nevh_scene_write(const nevh_scene *, const char *path);

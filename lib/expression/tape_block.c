@@ -32,7 +32,7 @@ double *nevh__rows_run(const nevh__rows *r, const nevh__instruction code[],
 nevh__rows nevh__rows_of(const nevh__tape *tape, size_t width, size_t from,
                          size_t columns, const double t[], const double q[],
                          const double p[], const double c[], double slots[]) {
-    /* Of nothing there may be no array. */
+    /* Zero-length arrays are not standard C. */
     const size_t *count = tape->count;
     return (nevh__rows){
         .base = {count[NEVH__T] ? t + from : slots,

@@ -155,7 +155,7 @@ bool nevh_integrator_native(const nevh_integrator *scheme) {
     return scheme && family_of_scheme(scheme) < FAMILIES;
 }
 
-/* Noise of differences is told of one orbit. */
+/* Difference noise is estimated for one orbit only. */
 bool nevh__native_by_lane(const nevh_work *w) {
     size_t i = family_of(w);
     return i < FAMILIES && families[i].by_lane && w->width > 1 &&

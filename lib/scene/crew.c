@@ -242,7 +242,7 @@ static void run_sharing(nevh__worker *w) {
     if (w->shared)
         nevh_ensemble_run(w->shared, next_sharing, done_sharing, w);
     else if (w->n_sharing)
-        out_of_memory(w->sweep); /* it was planned before */
+        out_of_memory(w->sweep); /* cannot fail for another reason */
     w->n_sharing = 0;
 }
 

@@ -14,7 +14,7 @@ start='y=-0.25,p_x=0.42081,p_y=0'
 # Chaos and order, with words; a run goes on until it is clear which.
 exits 0 chaos henon-heiles --start $start
 has '^ scene +integrator +dt +t +exponent +value +error +sali +megno +verdict'
-has 'chaotic: neighbours part by a factor of e in [12][0-9.]+ '
+has 'chaotic: nearby orbits separate e-fold every [12][0-9.]+ '
 # 0.045 of long runs; short ones from here are in the midst of chaos, and above it.
 exits 0 chaos henon-heiles --start $start --t-end 50000 --starts 16 --format csv
 tail -n 1 $work/out | awk -F, '{ exit !($6 > 0.040 && $6 < 0.052) }' ||
@@ -31,7 +31,7 @@ test "$(rows | wc -l)" -eq 1 || fails "has not one row"
 exits 0 chaos pendulum --start phi=pi --t-end 8 --format csv
 holds '$6 > 1 && $10 == "unstable"'
 exits 0 chaos pendulum --start phi=pi --t-end 8
-has 'unstable, not chaotic: neighbours part by a factor of e in$'
+has 'unstable, not chaotic: nearby orbits separate e-fold every'
 
 # Chaos of the steps is not that of H: Kepler's orbit at a step that is too long.  What is
 # chaotic is so by finer steps, too.
@@ -121,5 +121,5 @@ printf '%s\n' '[coordinates]' 'x = 1' '[effects]' 'kinetic = p_x^2/2' \
     'spring = x^2/2' '[friction]' 'drag = x: 0.1' '[run]' 'dt = 0.1' 't_end = 100' \
     >$work/damped.nevh
 exits 0 chaos $work/damped.nevh
-has 'regular: neighbours come together by a factor of e in (19|20|21)'
+has 'regular: nearby orbits approach e-fold every (19|20|21)'
 exit $status

@@ -345,7 +345,7 @@ void page_html(const page *, FILE *);
 void html_text(FILE *, const char *);
 
 /* outputs.c */
-/* Of what stands beside an output: the state of nevh run, and what an array of
+/* Suffixes of side files: the state of nevh run, and what an array of
    nevh sweep was made from. */
 #define STATE_ENDING      ".state"
 #define ARRAY_TEXT_ENDING ".txt"

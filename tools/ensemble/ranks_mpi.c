@@ -1,6 +1,6 @@
 /* nevh-mpi: what it has beside nevh.
 
-   Threads of a rank call MPI one at a time.  Whoever waits sleeps between looks:
+   Threads of a rank call MPI one at a time.  Waiting ranks poll with sleep:
    a processor may be another rank's.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "ranks.h"

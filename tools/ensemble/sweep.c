@@ -257,7 +257,7 @@ static int check_options(const options *o) {
             "--join makes -o FILE.npy of its parts: leave --task "
             "and --resume out");
     if (o->retry && !o->resume)
-        return tool_refuse("--retry is of members that failed before: give "
+        return tool_refuse("--retry repeats failed members: give "
                            "--resume FILE.npy");
     if ((o->resume || o->join || o->tasks || o->stop_after > 0) && !is_array(o))
         return tool_refuse("--resume, --stop-after, --task and --join take a "

@@ -92,7 +92,7 @@ static double mean_step(const work *w) {
     return (w->row->t_end - w->plan->run->t_start) * each / evaluations;
 }
 
-/* Whoever waits for a row no longer than its work is as much as that. */
+/* A compiler is waited for no longer than the row's own work takes. */
 typedef struct {
     const plan *plan;
     const nevh_integrator *scheme;

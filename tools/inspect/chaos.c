@@ -198,16 +198,15 @@ static void say_row(job *j, const row *r) {
     double error, value = nevh_chaos_exponent(r->chaos, 0, &error);
     char *what =
         now.verdict == NEVH_CHAOTIC
-            ? text_print("chaotic: neighbours part by a factor of e in %.3g",
+            ? text_print("chaotic: nearby orbits separate e-fold every %.3g",
                          1 / value)
         : now.verdict == NEVH_UNSTABLE_ORBIT
-            ? text_print("unstable, not chaotic: neighbours part by a factor "
-                         "of e in %.3g, as they do from an unstable "
+            ? text_print("unstable, not chaotic: nearby orbits separate e-fold "
+                         "every %.3g, as they do near an unstable "
                          "equilibrium or periodic orbit, or on an escape",
                          1 / value)
         : now.verdict == NEVH_REGULAR && value < -2 * error
-            ? text_print("regular: neighbours come together by a factor of e "
-                         "in %.3g",
+            ? text_print("regular: nearby orbits approach e-fold every %.3g",
                          -1 / value)
         : now.verdict == NEVH_REGULAR
             ? text_print("regular: the largest exponent is 0 within %.1g",

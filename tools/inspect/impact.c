@@ -254,12 +254,12 @@ static void say_chaos(const plan *p, list *words) {
     trial_run found = trial_run_new(p, true);
     const char *unit = nevh_scene_label(p->scene, "t");
     if (found.chaos.report.verdict == NEVH_CHAOTIC)
-        list_print(words,
-                   "The orbit is chaotic: a difference grows by a factor e in "
-                   "%.3g%s%s, until orbits have nothing in common.  Large "
-                   "differences tell that, not the size of an effect; of that "
-                   "the time of 1 %% tells more.",
-                   1 / found.chaos.exponent, *unit ? " " : "", unit);
+        list_print(
+            words,
+            "The orbit is chaotic: a difference grows by a factor e in "
+            "%.3g%s%s, until orbits are unrelated.  Compare the times of "
+            "1 %%, not the final differences, which only show that.",
+            1 / found.chaos.exponent, *unit ? " " : "", unit);
     free(found.failure);
 }
 

@@ -144,11 +144,12 @@ static int put_states(job *j, table *rows) {
 static void put_notes(const job *j, page *result) {
     const plan *p = j->plan;
     plan_notes(p, &result->before);
-    list_print(&result->before,
-               "Taylor series of more than double precision; certain is what "
-               "runs of two orders and two tolerances have in common (%zu "
-               "series)",
-               nevh_certain_series(j->orbit));
+    list_print(
+        &result->before,
+        "Taylor series of more than double precision; certain are the "
+        "digits common to two runs of different order and tolerance (%zu "
+        "series)",
+        nevh_certain_series(j->orbit));
     list_add(&result->before,
              "numbers that are written, as 0.1, are the doubles nearest to "
              "them, taken exactly; what is computed of them, and pi, has all "

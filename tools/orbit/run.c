@@ -100,7 +100,7 @@ static int check_options(const options *o) {
     if (o->resume && other)
         return tool_refuse("only CSV is resumed");
     if (o->fit.data && (o->resume || o->every || o->samples || o->at.count))
-        return tool_refuse("--data makes a row at each of its times: leave out "
+        return tool_refuse("--data sets the output times: leave out "
                            "--every, --samples, --at and --resume");
     return TOOL_OK;
 }

@@ -174,7 +174,7 @@ static void tell_winners(const costs *c, list *words) {
         if (costs_cheapest(c, cost_target[k]))
             tell_best(c, k, last, words);
         else
-            list_print(words, "%.0f digits are reached by none.",
+            list_print(words, "No integrator reaches %.0f digits.",
                        -log10(cost_target[k]));
         k = last;
     }
@@ -320,7 +320,7 @@ static void tell_empty(const costs *c, list *words) {
                    "error is larger.",
                    -log10(cost_target[k]));
     else
-        list_print(words, "%.0f digits are reached by none of these steps.",
+        list_print(words, "No step reaches %.0f digits.",
                    -log10(cost_target[k]));
 }
 
