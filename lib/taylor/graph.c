@@ -262,10 +262,9 @@ static int build(nevh__graph *g, const char *formula, const int of[3]) {
 
 static int slope_of(nevh__graph *g, nevh__derivative_text by, const int of[3]) {
     int top = build(g, by.top, of);
-    return by.bottom
-               ? nevh__graph_multiply(
-                     g, top, invert(g, build(g, by.bottom, of)))
-               : top;
+    return by.bottom ? nevh__graph_multiply(g, top,
+                                            invert(g, build(g, by.bottom, of)))
+                     : top;
 }
 
 /* Two halves that have one argument each. */
