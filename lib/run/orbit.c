@@ -136,6 +136,9 @@ static int run(nevh__running *r) {
 
 int nevh_orbit_run(nevh_stepper *s, const nevh_orbit *o, double q[],
                    double p[]) {
+    if (!s || !o)
+        return s ? nevh__fail(&s->report, NEVH_EINVAL, "there is no nevh_orbit")
+                 : nevh_stepper_status(s);
     nevh__running r = {s, o, o->h, q, p, NULL};
     int status = nevh__begin_run(&r);
     return status ? status : run(&r);

@@ -202,6 +202,7 @@ static nevh_separability separability;
     X(STATUS, nevh_run_until, (NULL, 0.1, 0.1, 0.1, out, out, NULL, 0))        \
     X(STATUS, nevh_run_at,                                                     \
       (NULL, 0.1, 0.1, 0.1, in, 1, out, NULL, out, out, NULL, 0))              \
+    X(STATUS, nevh_orbit_run, (NULL, NULL, out, out))                          \
     X(NUMBER, nevh_stepper_taken, (NULL))                                      \
     X(ANY, nevh_scene_free, (NULL))                                            \
     X(STATUS, nevh_scene_status, (NULL))                                       \
