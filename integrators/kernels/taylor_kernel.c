@@ -19,19 +19,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct {
-    nevh__recurrence *recurrence;
-    nevh__series_double *series;
-    size_t order;
-    nevh__series_long *first; /* of low orders; NULL: doubles will do */
-    long double *first_rows;
-    double longest;          /* of a series, in steps of the caller's */
-    nevh__series_code *code; /* NULL: there is none */
-    const double *numbers;
-    double *watched; /* what it watched last; order times n_watched */
-    bool *differs;   /* the code, from the recurrence */
-    size_t compared; /* series */
-} taylor_plan;
+typedef nevh__taylor_plan taylor_plan;
+typedef nevh__taylor_chain chain;
 
 const nevh__recurrence *nevh__taylor_recurrence(const nevh_work *w,
                                                 size_t *order) {
@@ -52,17 +41,7 @@ void nevh__taylor_use(nevh_work *w, nevh__series_code *code,
    what steps of h would find it is not to pass. */
 static const double most_steps = 8;
 
-/* Of one lane, in memory or scratch. */
-typedef struct {
-    double *begun;          /* whether there is a series */
-    double *since;          /* time since its beginning, of either sign, */
-    double *since_roundoff; /* and what that lost */
-    double *reach;          /* how long it holds, to either side */
-    double *roundoff;       /* 2n: of the state at its beginning */
-    double *rows;           /* 2n times order + 1: its coefficients */
-    double *lost; /* 2n times FIRST: what those of orders 1 ... FIRST lost */
-} chain;
-enum { HEAD = 4, FIRST = 8 };
+enum { HEAD = 5, FIRST = 8 };
 
 static size_t chain_size(const nevh_work *w) {
     const taylor_plan *plan = w->plan;
@@ -75,6 +54,7 @@ static chain chain_at(const nevh_work *w, double *from) {
                    .since = from + 1,
                    .since_roundoff = from + 2,
                    .reach = from + 3,
+                   .unit = from + 4,
                    .roundoff = from + HEAD,
                    .rows = from + HEAD + 2 * w->n,
                    .lost = from + HEAD + 2 * w->n * (plan->order + 2)};
@@ -162,7 +142,7 @@ static double size_of(const nevh_work *w, const double rows[], size_t k,
     return ldexp(most, shift);
 }
 
-/* How long a series holds.  By powers of two in units in which the state changes by
+/* How long a series holds, in its unit.  By powers of two in units in which the state changes by
    itself in about 1, so that other units of time or length give the same digits. */
 static double reach_of(const nevh_work *w, const double rows[]) {
     const taylor_plan *plan = w->plan;
@@ -186,6 +166,7 @@ static void change_at(const nevh_work *w, const chain *z, double since,
     const taylor_plan *plan = w->plan;
     size_t each = 2 * w->n;
     size_t last = plan->order - (plan->order % 2 == 0); /* the last odd one */
+    since /= *z->unit;
     double square = since * since;
     for (size_t i = 0; i < each; i++) {
         const double *row = z->rows + last * each + i;
@@ -222,6 +203,7 @@ static void find_lost(const nevh_work *w, const chain *z, double t) {
     long double *rows = plan->first_rows, *state = rows + (FIRST + 1) * each;
     for (size_t i = 0; i < each; i++)
         state[i] = (long double)z->rows[i] + z->roundoff[i];
+    nevh__series_in_long(plan->first, *z->unit);
     bool known = nevh__series_expand_long(plan->first, t, state, rows);
     for (size_t i = 0; i < FIRST * each; i++) {
         double x = z->rows[each + i];
@@ -229,17 +211,18 @@ static void find_lost(const nevh_work *w, const chain *z, double t) {
     }
 }
 
-static const double *watched_by(const taylor_plan *plan) {
-    return plan->code ? plan->watched
-                      : nevh__series_watched_double(plan->series);
+static const double *watched_by(const taylor_plan *plan, const chain *z) {
+    return plan->code && *z->unit == 1
+               ? plan->watched
+               : nevh__series_watched_double(plan->series);
 }
 
 /* Why there is no series at t that holds for long, where a domain has an edge. */
 static int fail_at_edge(nevh_work *w, const chain *z, double t) {
     const taylor_plan *plan = w->plan;
     char why[200];
-    size_t edge = nevh__domain_edge(plan->recurrence, watched_by(plan),
-                                    plan->order, *z->reach);
+    size_t edge = nevh__domain_edge(plan->recurrence, watched_by(plan, z),
+                                    plan->order, *z->reach / *z->unit);
     if (edge == SIZE_MAX)
         return NEVH_OK;
     nevh__domain_words(plan->recurrence, edge, why, sizeof why);
@@ -247,9 +230,15 @@ static int fail_at_edge(nevh_work *w, const chain *z, double t) {
                           w->integrator->name, t, why);
 }
 
+/* That of compiled series, 1, unless coefficients might overflow or underflow. */
+static double unit_for(const taylor_plan *plan, double h) {
+    int exponent = h != 0 ? ilogb(h) : 0;
+    return abs(exponent) * (int)plan->order > 512 ? ldexp(1, exponent) : 1;
+}
+
 /* The first of them are compared with those of the recurrence. */
-static bool expand(taylor_plan *plan, size_t each, double t,
-                   const double state[], double rows[]) {
+static bool expand_compiled(taylor_plan *plan, size_t each, double t,
+                            const double state[], double rows[]) {
     enum { COMPARED = 3 };
     size_t bytes = (plan->order + 1) * each * sizeof *rows;
     bool finite =
@@ -269,6 +258,14 @@ static bool expand(taylor_plan *plan, size_t each, double t,
     return finite;
 }
 
+static bool expand(taylor_plan *plan, size_t each, double t,
+                   const double state[], const chain *z) {
+    nevh__series_in_double(plan->series, *z->unit);
+    return *z->unit == 1
+               ? expand_compiled(plan, each, t, state, z->rows)
+               : nevh__series_expand_double(plan->series, t, state, z->rows);
+}
+
 /* A series at the state in rows, for the time t. */
 static int begin(nevh_work *w, const chain *z, double t, double h) {
     taylor_plan *plan = w->plan;
@@ -278,16 +275,19 @@ static int begin(nevh_work *w, const chain *z, double t, double h) {
     w->field->gradients++;
     if (*z->begun == 0)
         *z->reach = fabs(h);
-    bool finite = expand(plan, each, t, state, z->rows);
+    *z->unit = unit_for(plan, h);
+    bool finite = expand(plan, each, t, state, z);
     if (!finite && fail_at_edge(w, z, t))
         return NEVH_EDOM;
     if (!finite)
         return nevh_work_fail(w, NEVH_EDOM, NEVH__SERIES_NOT_FINITE, t);
     if (LONGER && plan->first)
         find_lost(w, z, t);
-    *z->reach = fmin(reach_of(w, z->rows), plan->longest * fabs(h));
-    *z->reach = nevh__domain_reach(plan->recurrence, watched_by(plan),
-                                   plan->order, *z->reach);
+    double reach =
+        fmin(reach_of(w, z->rows), plan->longest * fabs(h) / *z->unit);
+    *z->reach =
+        *z->unit * nevh__domain_reach(plan->recurrence, watched_by(plan, z),
+                                      plan->order, reach);
     *z->begun = 1;
     return NEVH_OK;
 }
@@ -297,6 +297,7 @@ static int begin(nevh_work *w, const chain *z, double t, double h) {
 static void pass_finely(const nevh_work *w, const chain *z, double step) {
     const taylor_plan *plan = w->plan;
     size_t each = 2 * w->n;
+    step /= *z->unit;
     for (size_t i = 0; i < each; i++) {
         const double *row = z->rows + i;
         double high = 0;

@@ -17,6 +17,33 @@ extern const nevh_kernel nevh__taylor_kernel;
 typedef int nevh__series_code(const double numbers[], double t,
                               const double state[], double rows[],
                               double watched[]);
+
+typedef struct {
+    nevh__recurrence *recurrence;
+    nevh__series_double *series;
+    size_t order;
+    nevh__series_long *first; /* of low orders; NULL: doubles will do */
+    long double *first_rows;
+    double longest;          /* of a series, in steps of the caller's */
+    nevh__series_code *code; /* NULL: there is none */
+    const double *numbers;
+    double *watched; /* what it watched last; order times n_watched */
+    bool *differs;   /* the code, from the recurrence */
+    size_t compared; /* series */
+} nevh__taylor_plan;
+
+/* Of one lane, in memory or scratch. */
+typedef struct {
+    double *begun;          /* whether there is a series */
+    double *since;          /* time since its beginning, of either sign, */
+    double *since_roundoff; /* and what that lost */
+    double *reach;          /* how long it holds, to either side */
+    double *unit;           /* of time, in rows and lost: a power of two */
+    double *roundoff;       /* 2n: of the state at its beginning */
+    double *rows;           /* 2n times order + 1: its coefficients */
+    double *lost; /* 2n times FIRST: what those of orders 1 ... FIRST lost */
+} nevh__taylor_chain;
+
 const nevh__recurrence *nevh__taylor_recurrence(const nevh_work *,
                                                 size_t *order);
 void nevh__taylor_use(nevh_work *, nevh__series_code *, const double numbers[],
