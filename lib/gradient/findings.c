@@ -126,12 +126,23 @@ static void try_mirrors(nevh_probe *b) {
     }
 }
 
+/* A time in which H moves the state by its lengths: a power of two. */
+static double unit_of_time(nevh_probe *b, size_t at) {
+    const double *length = b->selection.length;
+    size_t n = b->field->n;
+    double moved = fabs(energy(b, at, 1, 0) - energy(b, at, 0, 0)), most = 0;
+    for (size_t k = 0; k < n; k++)
+        most = fmax(most, length[k] * length[n + k]);
+    double time = most / moved;
+    return isfinite(time) && time > 0 ? ldexp(1, ilogb(time)) : 1;
+}
+
 /* Periods of the driving are not known: many spans, none a simple fraction of
    another. */
 static void try_times(nevh_probe *b, size_t at) {
-    double now = energy(b, at, 1, 0);
+    double now = energy(b, at, 1, 0), unit = unit_of_time(b, at);
     for (int i = -10; i <= 10; i++) {
-        double later = energy(b, at, 1, 1.618 * exp2(2 * i));
+        double later = energy(b, at, 1, 1.618 * unit * exp2(2 * i));
         violate(b, NEVH_IS_AUTONOMOUS, fabs(later - now),
                 fabs(later) + fabs(now), at);
     }
