@@ -35,8 +35,8 @@ typedef struct {
     bool velocities;  /* `value` reads v */
 } nevh_quantity;
 
-/* What is kept of an orbit: kinds of outcomes, which nevh_outcomes lists.  Later
-   ones have no constant here: nevh_outcome_find finds them by name. */
+/* What is kept of an orbit: kinds of outcomes, which nevh_outcomes lists.  Kinds
+   added later have no constant: nevh_outcome_find finds them by name. */
 typedef enum {
     NEVH_OUTCOME_STATE,        /* coordinates and momenta at the end: 2n */
     NEVH_OUTCOME_TIME,         /* reached */

@@ -210,7 +210,7 @@ NEVH_API int nevh_run_at(nevh_stepper *, double t0, double h, double t_end,
                          const double times[], size_t count, double states[],
                          size_t *kept, double q[], double p[],
                          const nevh_observer observers[], size_t n_observers);
-/* A run to t_end and what is asked of it; what is 0 is not asked. */
+/* A run to t_end; members that are 0 are not used. */
 typedef struct {
     double t0, h, t_end; /* as of nevh_run_until */
     const nevh_observer *observers;
@@ -218,13 +218,14 @@ typedef struct {
     /* Samples: sample(sample_data, i, times[i], q, p) is called at each of n_times
        times, in the order in which the run passes them; a result other than 0
        stops the run.  times NULL: at equal distances, the first at t0, the last at
-       t_end. */
+       t_end; n_times is at least 2.  Samples at the time of a state come before its
+       observers.  Samples may not save the stepper. */
     const double *times;
     size_t n_times;
     nevh_observe_fn sample;
     void *sample_data;
-    /* Of a run that continues one that was saved: steps and samples before, and
-       the time of the state. */
+    /* To continue a saved run: steps and samples before, and the time of the state
+       (used where steps_before is not 0). */
     size_t steps_before, samples_before;
     double t_before;
 } nevh_orbit;
@@ -237,7 +238,7 @@ typedef struct {
    returns  as nevh_run_at; NEVH_STOPPED where an observer or sample stopped it */
 NEVH_API int nevh_orbit_run(nevh_stepper *, const nevh_orbit *, double q[],
                             double p[]);
-/* Steps that the last run completed, with those before it of nevh_orbit. */
+/* Steps completed by the last run, including nevh_orbit.steps_before. */
 NEVH_API size_t nevh_stepper_taken(const nevh_stepper *);
 
 #ifdef __cplusplus

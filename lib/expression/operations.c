@@ -1,8 +1,9 @@
 /* nevh: what is known of the operations of formulas.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/tape_inside_private.h"
+#include "system/print_private.h"
 #include <ctype.h>
-#include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 
 // clang-format off
@@ -46,6 +47,13 @@ static nevh__tape_operation named(const char *name, size_t bytes) {
     return (nevh__tape_operation)i;
 }
 
+/* In any locale. */
+static double number_of(const char *word, size_t bytes) {
+    char text[32];
+    snprintf(text, sizeof text, "%.*s", (int)bytes, word);
+    return nevh__read_number(text);
+}
+
 int nevh__operation_build(const char *formula, const int of[3],
                           const nevh__algebra *x) {
     enum { DEPTH = 8 };
@@ -58,7 +66,7 @@ int nevh__operation_build(const char *formula, const int of[3],
         if (letter)
             stack[++used] = of[*formula == 'y' ? 2 : *formula - 'a'];
         else if (digit)
-            stack[++used] = x->number(x->data, strtod(formula, NULL));
+            stack[++used] = x->number(x->data, number_of(formula, bytes));
         else {
             nevh__tape_operation f = named(formula, bytes);
             int b = stack[used];

@@ -27,8 +27,8 @@
 typedef enum { NEVH__T, NEVH__Q, NEVH__P, NEVH__C } nevh__variable;
 enum { NEVH__VARIABLES = 4 };
 
-/* The operations of operations_private.h.  atan2(y, x).  mod has the sign of its second argument and is exact for
-   integers.  Of min and max, an argument that is NaN wins.  bessel_j0 and
+/* The operations of operations_private.h.  atan2(y, x).  mod has the sign of its
+   second argument and is exact for integers.  Of min and max, an argument that is NaN wins.  bessel_j0 and
    bessel_j1 are of the first kind, |x| < 4e15; elliptic_k and elliptic_e are
    complete integrals of the modulus k, |k| < 1 (elliptic_e: also 1).
    kepler(M, e) is the eccentric anomaly, E - e sin E = M, 0 <= e < 1, of mean
@@ -64,10 +64,10 @@ typedef struct {
     int arity;        /* 1 or 2 */
     const char *usage;
     nevh__derivative_text by_a, by_b; /* derivatives */
-    const char *as;                   /* the same by other operations */
-    const char *edge;                 /* where it is 0 the function ends */
-    const char *at_edge;              /* and what is said there */
-    bool touches;                     /* the edge may be touched */
+    const char *as;      /* rewritten in other operations, for series */
+    const char *edge;    /* where it is 0 the function ends */
+    const char *at_edge; /* and what is said there */
+    bool touches;        /* finite at the edge */
     bool steep;    /* it grows faster than any polynomial, or saturates so */
     bool exact;    /* it rounds nothing */
     bool lanewise; /* compiled text takes lane by lane */

@@ -93,8 +93,9 @@ static int run_fixed(nevh__running *r, nevh__branch *b) {
     double steps;
     if (nevh__whole_steps(o->t_end - o->t0, &r->h, &steps))
         return run_whole(r, steps);
-    int status = nevh__run_steps(r, (size_t)steps, false);
-    if (status) {
+    bool there = (double)r->stepper->taken > steps; /* by a saved run */
+    int status = nevh__run_steps(r, (size_t)steps, there);
+    if (status || there) {
         nevh__end_run(r);
         return status;
     }
@@ -119,7 +120,7 @@ static int run(nevh__running *r) {
     int status = nevh__span_check(s, o->t0, o->h, o->t_end);
     if (!status)
         status = nevh__branch_open(&b, s);
-    if (!status && o->n_times > o->samples_before) {
+    if (!status && o->sample && o->n_times > o->samples_before) {
         r->samples = nevh__samples_new(r);
         status = r->samples ? NEVH_OK : s->report.status;
     }
@@ -172,6 +173,8 @@ int nevh_run_at(nevh_stepper *s, double t0, double h, double t_end,
                 const double times[], size_t count, double states[],
                 size_t *kept, double q[], double p[],
                 const nevh_observer observers[], size_t n_observers) {
+    if (s && s->planned && count > 0 && !times)
+        return nevh__fail(&s->report, NEVH_EINVAL, "there are no times");
     table a = {states, count, 0, s ? s->work.n : 0};
     nevh_orbit o = {t0,    h,     t_end, observers, n_observers,
                     times, count, keep,  &a,        .steps_before = 0};

@@ -66,7 +66,7 @@ static bool make_outcome(nevh__variant *x, const nevh__scene_outcome *from,
         return make_quantity(x, from->below ? right : left,
                              from->below ? left : right, &to->quantity, report);
     case NEVH_OUTCOME_TAKES_FORMULA:
-        to->modulus = period_of(x->model, left);
+        to->modulus = from->type->of_turns ? period_of(x->model, left) : 0;
         return make_quantity(x, left, NULL, &to->quantity, report);
     case NEVH_OUTCOME_TAKES_SECTION:
         is = &x->model->crossings[from->section].decl;

@@ -239,9 +239,11 @@ int nevh__graph_power(nevh__graph *g, int a, nevh__wide c) {
 
 /* Functions and their derivatives. */
 
-static int raw_call(nevh__graph *g, int function, int a, int b) {
+/* of: the function of whose second half NEVH__NOTHING is. */
+static int raw_call(nevh__graph *g, int function, size_t of, int a, int b) {
     return node(g, (nevh__graph_node){.kind = NEVH__GRAPH_CALL,
                                       .function = (uint8_t)function,
+                                      .at = of,
                                       .a = a,
                                       .b = b,
                                       .slope = -1});
@@ -270,7 +272,8 @@ static int slope_of(nevh__graph *g, nevh__derivative_text by, const int of[3]) {
 /* Two halves that have one argument each. */
 static int call_of_two(nevh__graph *g, nevh__tape_operation f, int a, int b) {
     const nevh__operation_traits *known = nevh__operation_of(f);
-    int by_a = raw_call(g, f, a, b), by_b = raw_call(g, NEVH__NOTHING, b, a);
+    int by_a = raw_call(g, f, 0, a, b),
+        by_b = raw_call(g, NEVH__NOTHING, f, b, a);
     const int of[3] = {a, b, -1};
     int slope_a = slope_of(g, known->by_a, of);
     int slope_b = slope_of(g, known->by_b, of);
@@ -282,7 +285,7 @@ static int call_of_two(nevh__graph *g, nevh__tape_operation f, int a, int b) {
 }
 
 static int call(nevh__graph *g, nevh__tape_operation f, int a) {
-    int y = raw_call(g, f, a, -1);
+    int y = raw_call(g, f, 0, a, -1);
     if (y < 0 || g->nodes[y].slope >= 0)
         return y;
     g->nodes[y].slope = y; /* while it is being made: sine and cosine have each

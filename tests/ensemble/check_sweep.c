@@ -15,7 +15,7 @@
     "[sections]\nswing = when phi = 0, rising: phi\n"                          \
     "[run]\nt_end = 40\ndt = 0.05\n[ensemble]\n"
 
-enum { MOST = 700, COLUMNS = 8 };
+enum { MOST = 700, COLUMNS = 10 };
 typedef struct {
     size_t count, columns;
     uint64_t last;
@@ -115,7 +115,8 @@ TEST(rms_is_of_any_unit) {
     results *all =
         run(PENDULUM "phi = 0, 1, 2\noutcomes = rms(phi), rms(2^1000*phi), "
                      "rms(phi/2^1000), mean((2^1000*phi)^2), "
-                     "mean((phi/2^1000)^2), rms(phi*t), rms(1/phi)\n",
+                     "mean((phi/2^1000)^2), rms(phi*t), rms(1/phi), "
+                     "rms(exp(-1e5*t)), mean(exp(-2e5*t))\n",
             plain());
     for (size_t i = 0; i < all->count; i++) {
         const double *row = all->row[i];
@@ -125,6 +126,7 @@ TEST(rms_is_of_any_unit) {
         ck_assert_int_eq(isfinite(row[4]) != 0, i == 0);
         ck_assert_int_eq(row[6] > row[1], i > 0);
         ck_assert_int_eq(isnan(row[7]) != 0, i == 0);
+        ck_assert_double_eq_tol(row[8], sqrt(row[9]), 1e-15);
     }
     free(all);
 }

@@ -296,3 +296,22 @@ TEST(a_sample_ends_a_run) {
     nevh_stepper_free(m);
     put_away(&a.in);
 }
+
+/* Of a run that is over there is nothing left to do, also where its end lies between
+   steps. */
+TEST_EACH(runs_that_are_over_end_at_once, 2 * (scheme_count() + 1)) {
+    timed a = prepare_times(_i);
+    double t_end = a.b->t0 + 2.5 * a.h;
+    nevh_stepper *m = stepper_for(&a.in);
+    state x = start(a.b), y;
+    nevh_orbit o = {.t0 = a.b->t0, .h = a.h, .t_end = t_end};
+    ck_assert_int_eq(nevh_orbit_run(m, &o, x.q, x.p), NEVH_OK);
+    o.steps_before = nevh_stepper_taken(m);
+    o.t_before = t_end;
+    y = x;
+    ck_assert_int_eq(nevh_orbit_run(m, &o, y.q, y.p), NEVH_OK);
+    assert_same_state(a.b, &x, &y);
+    ck_assert_uint_eq(nevh_stepper_taken(m), o.steps_before);
+    nevh_stepper_free(m);
+    put_away(&a.in);
+}

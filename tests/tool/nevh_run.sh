@@ -228,6 +228,16 @@ again e 10000 pendulum --every 1
 again d 1000 figure-eight --integrators gauss8 --t-end 50 \
     --at 1,2.5,20.1,33,49.999
 
+# A signal that comes at the last state: the run is whole.
+for dt in 0.5 0.3; do
+    exits 0 run pendulum --dt $dt --t-end 10 -o $work/last.whole
+    count=$(rows $work/last.whole | wc -l)
+    stop $TERM INTERRUPT_STEP=$count run pendulum --dt $dt --t-end 10 \
+        -o $work/last.csv && fails "is interrupted when it is done"
+    cmp $work/last.csv $work/last.whole || fails "is not whole at its end"
+    test -e $work/last.csv.state && fails "left its state"
+done
+
 # Ends that ask nobody, before a write and in it.  Linux may cut a line that goes
 # over the end of a page there.
 cut() {

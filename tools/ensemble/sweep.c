@@ -267,7 +267,7 @@ static int check_options(const options *o) {
 
 /* Outcomes, as they are written. */
 static void print_outcomes(FILE *f) {
-    static const char *const argument[] = {"", "(F)", "(A > B)", ""};
+    static const char *const argument[] = {"", "(F)", "(A > B)", "[(SECTION)]"};
     fputs("\nOutcomes:\n", f);
     for (size_t k = 0; nevh_outcomes()[k]; k++) {
         const nevh_outcome_info *o = nevh_outcomes()[k];

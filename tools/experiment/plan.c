@@ -277,7 +277,8 @@ double plan_steps(const plan *p, double h) {
 
 void plan_tell_native(const nevh_stepper *s) {
     const char *why;
-    if (!nevh_stepper_status(s) && !nevh_stepper_native(s, &why))
+    int status = nevh_stepper_status(s);
+    if ((!status || status == NEVH_STOPPED) && !nevh_stepper_native(s, &why))
         plan_tell_why(why);
 }
 

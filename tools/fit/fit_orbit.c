@@ -140,10 +140,11 @@ static bool follow(fitting *f, nevh_stepper *s, double residual[]) {
     trajectory_free(r);
     f->cost = nevh_stepper_counts(s).gradients;
     bool dear = check_budget(&b) != TOOL_OK;
+    int status = nevh_stepper_status(s);
     bool whole = c.point == f->used && !dear;
     if (dear)
         fails(f, "it takes too many steps");
-    else if (!whole && nevh_stepper_status(s))
+    else if (!whole && status && status != NEVH_STOPPED)
         fails(f, nevh_stepper_message(s));
     else if (!whole)
         fails(f, "the orbit ends before the data, or is not finite");

@@ -240,12 +240,12 @@ static bool is_before(const trajectory *r, double a, double b) {
     return a < b && !same(r, a, b);
 }
 
-/* Observers and samples return whether the run is to end. */
+/* Observers and samples return whether the run is to end before t_end. */
 
 static bool show_row(trajectory *r, double t, const double q[],
                      const double p[]) {
     r->status = show(r, t, q, p);
-    return r->status || r->finished;
+    return r->status || (r->finished && t != r->plan->t_end);
 }
 
 static int take_step(void *data, size_t step, double t, const double q[],
@@ -254,6 +254,7 @@ static int take_step(void *data, size_t step, double t, const double q[],
     if (step < r->now.at.row && t != r->plan->t_end)
         return false;
     r->now.at.row = step + r->rows.every;
+    r->finished = t == r->plan->t_end;
     return show_row(r, t, q, p);
 }
 
@@ -286,14 +287,15 @@ static double seconds(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Twice or half as many steps between looks at the clock. */
+/* Looks at the clock are rarer while steps are cheap, and at each step as soon as one
+   is not. */
 static void pace(clockwork *c, double now) {
     static const double brief = 1e-4, long_ago = 1e-3; /* seconds */
-    static const size_t most = 1 << 20;
+    static const size_t most = 64;
     if (now - c->last < brief && c->every < most)
         c->every *= 2;
-    else if (now - c->last > long_ago && c->every > 1)
-        c->every /= 2;
+    else if (now - c->last > long_ago)
+        c->every = 1;
     c->last = now;
 }
 
@@ -317,6 +319,8 @@ static int tick(trajectory *r) {
 static int attend(void *data, size_t step, double t, const double q[],
                   const double p[]) {
     trajectory *r = data;
+    if (r->finished)
+        return false;
     r->now.at.step = step;
     r->now.at.t = t;
     if (r->stops)
@@ -405,7 +409,8 @@ int trajectory_follow(trajectory *r, const trajectory_watch *watch) {
     double last = fmax(fabs(r->plan->run->t_start), fabs(r->plan->t_end));
     r->clock = (clockwork){begin + between_saves, begin, 1, watch, false};
     if (!r->own_time && last + r->plan->dt[0] == last)
-        return failed(r, r->now.at.t, "no time passes in a step");
+        return show(r, r->now.at.t, r->now.q, r->now.p),
+               failed(r, r->now.at.t, "no time passes in a step");
     int status = run(r);
     if (r->clock.shown)
         fputs("\r\033[K", stderr);

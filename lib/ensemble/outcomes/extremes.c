@@ -29,7 +29,8 @@ const nevh__outcome_type nevh__outcome_min = {
     .info = {.name = "min",
              .takes = NEVH_OUTCOME_TAKES_FORMULA,
              .unit = NEVH_UNIT_OF_FORMULA,
-             .help = "the smallest value of a formula after a step"},
+             .help = "the smallest value of a formula at the start and after "
+                     "each step"},
     .of_values = true,
     .size = sizeof(double),
     .begin = begin,
@@ -40,7 +41,8 @@ const nevh__outcome_type nevh__outcome_max = {
     .info = {.name = "max",
              .takes = NEVH_OUTCOME_TAKES_FORMULA,
              .unit = NEVH_UNIT_OF_FORMULA,
-             .help = "the largest value of a formula after a step"},
+             .help = "the largest value of a formula at the start and after "
+                     "each step"},
     .of_values = true,
     .size = sizeof(double),
     .begin = begin,

@@ -58,7 +58,9 @@ const nevh__outcome_type nevh__outcome_frequency = {
     .info = {.name = "frequency",
              .takes = NEVH_OUTCOME_TAKES_FORMULA,
              .unit = NEVH_UNIT_FREQUENCY,
-             .help = "of the largest line in the spectrum of a formula"},
+             .help = "the frequency of the largest line in the spectrum of a "
+                     "formula"},
+    .of_turns = true,
     .size = sizeof(samples),
     .plan = plan,
     .clear = clear,

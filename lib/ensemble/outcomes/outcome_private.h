@@ -44,8 +44,9 @@ typedef struct {
     bool whole_state; /* 2n numbers; others: one */
     bool of_values;   /* NAN only where the quantity is undefined */
     bool of_energy;   /* the ensemble has a nevh_energy */
-    bool branches;    /* shorter steps branch off from states before */
-    size_t size;      /* of a record, in bytes */
+    bool of_turns; /* angles are continued: the period of a coordinate counts */
+    bool branches; /* shorter steps branch off from states before */
+    size_t size;   /* of a record, in bytes */
     int (*plan)(nevh_ensemble *, size_t outcome, const nevh_options *);
     void (*clear)(void *record);
     void (*begin)(const nevh__observation *, void *record);

@@ -12,9 +12,9 @@ typedef struct {
     double sum, roundoff; /* sum + roundoff is the integral of squares */
 } integral;
 
-static void choose_scale(integral *x, double value) {
+static void choose_scale(integral *x, double size) {
     const double large = 0x1p300;
-    double size = fabs(value), scaled = size * x->scale;
+    double scaled = size * x->scale;
     bool vanishes = scaled < 1 / large && x->sum == 0;
     if (!(size > 0 && isfinite(size)) || !(scaled > large || vanishes))
         return;
@@ -28,12 +28,12 @@ static void choose_scale(integral *x, double value) {
 static void begin(const nevh__observation *at, void *record) {
     integral *x = record;
     *x = (integral){.scale = 1};
-    choose_scale(x, at->value);
+    choose_scale(x, fabs(at->value));
 }
 
 static void step(const nevh__observation *at, void *record) {
     integral *x = record;
-    choose_scale(x, at->value);
+    choose_scale(x, fmax(fabs(at->value_before), fabs(at->value)));
     double a = at->value_before * x->scale, b = at->value * x->scale;
     double part = (at->t - at->t_before) / 2 * (a * a + b * b);
     double next = x->sum + part;
