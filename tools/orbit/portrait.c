@@ -376,9 +376,6 @@ static int draw(job *j, const options *o) {
 
 static int portrait(const options *o) {
     job j = {0};
-    if (o->file)
-        return tool_refuse("nevh portrait writes no rows: give the picture's "
-                           "name to --plot, not to -o");
     if (!plot_wanted(o))
         return tool_refuse("nevh portrait draws: give --plot FILE.svg, or "
                            "--plot - for the terminal");
