@@ -155,6 +155,18 @@ static bool alike(const variation *a, const variation *b) {
            noise < 0.1;
 }
 
+/* What is seen is rounding: far from where cos(x/1e-30) is resolved, as its argument
+   is rounded.  Nearer there is less of that, unlike of noise. */
+static bool is_lost(const nevh__step_selection *e, const nevh__planned *term,
+                    size_t instance, size_t k, double distance,
+                    const variation *v) {
+    static const double less = 0x1p-4;
+    if (v->rest <= not_quadratic * v->whole || v->whole > v->rounding)
+        return false;
+    double nearer = ldexp(distance, -LEAP);
+    return vary(e, term, instance, k, nearer).rounding < less * v->rounding;
+}
+
 /* Within a distance of many periods, five values may happen to be those of a
    quadratic.  Somewhere nearer they are not, although they vary as much; little
    ripples do not count.  Returns where, or else the distance. */
@@ -164,7 +176,8 @@ static double unfold(const nevh__step_selection *e, const nevh__planned *term,
     for (int down = NEARER; whole > 0 && down <= NEAREST; down += NEARER) {
         double nearer = ldexp(distance, -down);
         variation v = vary(e, term, instance, k, nearer);
-        if (too_far(&v) && v.whole >= as_much * whole)
+        if (v.whole >= as_much * whole &&
+            (too_far(&v) || is_lost(e, term, instance, k, nearer, &v)))
             return nearer;
     }
     return distance;
@@ -174,7 +187,8 @@ static double unfold(const nevh__step_selection *e, const nevh__planned *term,
 static bool leap_down(const nevh__step_selection *e, const nevh__planned *term,
                       size_t instance, size_t k, double *distance, int *leaps) {
     variation v = vary(e, term, instance, k, *distance);
-    while (too_far(&v) && *leaps < FARTHEST / LEAP) {
+    while (*leaps < FARTHEST / LEAP &&
+           (too_far(&v) || is_lost(e, term, instance, k, *distance, &v))) {
         variation before = v;
         ++*leaps;
         *distance = ldexp(*distance, -LEAP);

@@ -119,3 +119,29 @@ TEST_EACH(terms_that_vanish_change_nothing, 3 * VANISHING) {
                       "%s: %.17g, %.17g for %.17g, %.17g", vanishing[_i / 3],
                       q[1][k], p[1][k], q[0][k], p[0][k]);
 }
+
+/* Angles from 0 in units in which the arguments of waves are all rounding at a first
+   guess of 1. */
+static const char *const waves[] = {"-cos(x/u)", "-2*cos(x/u) - cos(y/u)",
+                                    "-cos(x/u - y/u)*(2 + sin(x/u))",
+                                    "2*sin(x/u/2)^2 - 0.3*cos(3*y/u)"};
+enum { WAVES = sizeof waves / sizeof *waves };
+
+TEST_EACH(waves_of_any_length, WAVES) {
+    static const int powers[] = {-100, -73, -41, -20, 0, 50};
+    for (size_t i = 0; i < sizeof powers / sizeof *powers; i++) {
+        double q[2][2], p[2][2], u = ldexp(1, powers[i]);
+        char text[600];
+        snprintf(text, sizeof text,
+                 "[parameters]\nu = %.17g\n[coordinates]\nx = 0, 0.9/u\n"
+                 "y = 0, 0.4/u\n[effects]\nK = (p_x^2 + p_y^2)*u^2/2\nV = %s\n",
+                 u, waves[_i]);
+        take_steps(text, nevh_verlet, nevh_exact, 0.05, q[0], p[0]);
+        take_steps(text, nevh_verlet, nevh_central4, 0.05, q[1], p[1]);
+        for (int k = 0; k < 2; k++)
+            ck_assert_msg(fabs(q[1][k] - q[0][k]) < 1e-9 * u &&
+                              fabs(p[1][k] - p[0][k]) < 1e-9 / u,
+                          "%s, u = %g: %.17g, %.17g for %.17g, %.17g",
+                          waves[_i], u, q[1][k], p[1][k], q[0][k], p[0][k]);
+    }
+}
