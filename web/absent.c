@@ -6,6 +6,7 @@
    the library tells as it tells GSL's own.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/passage_private.h"
+#include "ensemble/outcomes/outcome_private.h"
 #include "gradient/step_selection_private.h"
 #include "kernels/gsl_private.h"
 #include "kernels/tao_private.h"
@@ -34,6 +35,15 @@ static int refuse(nevh_work *w) {
 }
 const nevh_kernel nevh__gsl_kernel = {.plan = refuse};
 const nevh_kernel nevh__tao_kernel = {.plan = refuse};
+
+/* Outcomes of sweeps that need GSL: scenes may name them, and no sweep runs here. */
+#define OUTCOME(name_, takes_)                                                 \
+    const nevh__outcome_type nevh__outcome_##name_ = {                         \
+        .info = {.name = #name_, .takes = NEVH_OUTCOME_TAKES_##takes_}};
+OUTCOME(first, CONDITION)
+OUTCOME(crossings, SECTION)
+OUTCOME(period, SECTION)
+OUTCOME(frequency, FORMULA)
 
 /* A solver of roots that finds none. */
 static const char roots[] = "GSL's solver for several unknowns";
