@@ -35,11 +35,9 @@ has '^"1e9 steps, one output",verlet,.*stopped by the budget.*,bounded$'
 has '^dt = 1e300,rk4,.*,(failed|unstable)$'
 has '^dt = 1e-300,verlet,.*,bounded$'
 
-# What is not symplectic is bounded only within rounding; that of an H which changes by
-# 1e-6 from call to call is what this makes of its differences.
+# What is not symplectic is bounded only within rounding.
 grep ',rk4,.*,bounded$' $work/out | sed 's/"[^"]*"//g' |
-    awk -F, '{ most = /from call to call/ ? 1e-4 : 1e-8 }
-        $8 > most && !/kink/ { print; wrong = 1 } END { exit wrong }' ||
+    awk -F, '$8 > 1e-8 && !/kink/ { print; wrong = 1 } END { exit wrong }' ||
     fails "calls rk4 bounded"
 
 # compare names the cause, and a step to take.

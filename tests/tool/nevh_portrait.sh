@@ -8,7 +8,7 @@ says 'nevh portrait draws: give --plot FILE'
 exits 2 portrait pendulum --plot $work/a.doc
 says 'FILE.svg'
 exits 2 portrait pendulum --plot $work/a.svg -o $work/a.csv
-says 'output is no option of nevh portrait'
+says 'writes no rows'
 if ! command -v gnuplot >/dev/null 2>&1; then
     echo "there is no gnuplot"
     exit $((status ? 1 : 77))

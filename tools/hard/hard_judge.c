@@ -153,10 +153,18 @@ static bool climbs(const hard_subject *s, const hard_result *r) {
            r->energy.max > r->floor + rounding(s, r);
 }
 
+/* Whether there is no more than rounding.  Where values of H are noise that is larger
+   than rounding, errors walk at random, also while they happen to stay small. */
+static bool is_level(const hard_subject *s, const hard_result *r) {
+    static const double most_rounding = 1e-8; /* of the energy */
+    double most = r->energy.max;
+    bool walks = is(s, HARD_NOISE) && most > most_rounding;
+    return r->energy.verdict == NEVH_BOUNDED && !walks &&
+           most <= r->floor + rounding(s, r);
+}
+
 static hard_verdict judge_energy(const hard_subject *s, hard_result *r) {
     double most = r->energy.max;
-    bool level =
-        r->energy.verdict == NEVH_BOUNDED && most <= r->floor + rounding(s, r);
     r->happened = text_print(
         r->whole ? "energy error %.1e"
                  : "energy error %.1e; stopped by the budget after %zu of %.0e "
@@ -172,7 +180,7 @@ static hard_verdict judge_energy(const hard_subject *s, hard_result *r) {
             most, r->state_at, r->state_error, r->state_bound);
         return HARD_WRONG;
     }
-    return level || hard_keeps(r) ? HARD_BOUNDED : HARD_DRIFTS;
+    return is_level(s, r) || hard_keeps(r) ? HARD_BOUNDED : HARD_DRIFTS;
 }
 
 static hard_verdict judge_explosion(const hard_subject *s, hard_result *r) {

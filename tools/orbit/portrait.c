@@ -411,5 +411,7 @@ const command portrait_command = {
         "portrait pendulum --t-end 20 --vary 'phi = range(0.5, 3, 6)' --plot portrait.svg\n"
         "portrait pendulum --t-end 20 --integrators verlet,rk4 --dt 0.3 --plot portrait.svg",
     .options = "SCENE STEPS NATIVE PLOT tolerance vary data section quiet",
+    .instead = {"output",
+                "it writes no rows: give the picture's name to --plot"},
     .run = portrait,
 };
