@@ -36,13 +36,14 @@ bool nevh__operation_is_special(unsigned operation) {
     return operations[operation].kind == NEVH__KIND_SPECIAL;
 }
 
-/* The name of an operation as formulas here have it. */
+/* The name of an operation as formulas here have it; COUNT: there is none. */
 static nevh__tape_operation named(const char *name, size_t bytes) {
     if (bytes == 3 && strncmp(name, "neg", bytes) == 0)
         return NEVH__NEGATE;
     int i = 0;
-    while (strlen(operations[i].name) != bytes ||
-           strncmp(operations[i].name, name, bytes) != 0)
+    while (i < NEVH__OPERATION_COUNT &&
+           (strlen(operations[i].name) != bytes ||
+            strncmp(operations[i].name, name, bytes) != 0))
         i++;
     return (nevh__tape_operation)i;
 }
@@ -69,6 +70,8 @@ int nevh__operation_build(const char *formula, const int of[3],
             stack[++used] = x->number(x->data, number_of(formula, bytes));
         else {
             nevh__tape_operation f = named(formula, bytes);
+            if (f == NEVH__OPERATION_COUNT)
+                return -1;
             int b = stack[used];
             used -= operations[f].arity - 1;
             stack[used] = x->apply(x->data, f, stack[used], b);

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <nevh/scene.h>
 #include <stdio.h>
+#include <string.h>
 
 static const struct {
     double a, b;
@@ -39,6 +40,29 @@ static double evaluate(const char *formula, double a, double b, double y) {
     const nevh__algebra numbers = {&s, put_number, put_operation};
     int of[3] = {put(&s, a), put(&s, b), put(&s, y)};
     return s.value[nevh__operation_build(formula, of, &numbers)];
+}
+
+/* What nevh__tape_along takes for granted of an entry. */
+TEST_EACH(formulas_are_short_and_have_one_denominator, NEVH__OPERATION_COUNT) {
+    const nevh__operation_traits *known = nevh__operation_of((unsigned)_i);
+    nevh__derivative_text by[] = {known->by_a, known->by_b};
+    const char *texts[] = {by[0].top,    by[0].bottom, by[1].top,
+                           by[1].bottom, known->as,    known->edge};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+        ck_assert(!texts[i] || strlen(texts[i]) < 64);
+    ck_assert(!by[0].top || known->arity == 1 || by[1].top);
+    ck_assert(!by[1].top || !by[0].bottom == !by[1].bottom);
+    ck_assert(!by[1].bottom || strcmp(by[0].bottom, by[1].bottom) == 0);
+    ck_assert(!by[1].top || strcmp(by[0].top, "0") != 0);
+}
+
+/* The node of a misspelt formula is none. */
+TEST(formulas_of_unknown_words_fail) {
+    sheet s = {.used = 0};
+    const nevh__algebra numbers = {&s, put_number, put_operation};
+    int of[3] = {put(&s, 1), put(&s, 2), put(&s, 3)};
+    ck_assert_int_eq(nevh__operation_build("a sine", of, &numbers), -1);
+    ck_assert_int_ge(nevh__operation_build("a sin", of, &numbers), 0);
 }
 
 static double derivative(nevh__derivative_text by, double a, double b,
