@@ -16,6 +16,19 @@ static int stop_costly(void *data, size_t step, double t, const double q[],
     return nevh_stepper_counts(s).gradients > MOST_GRADIENTS;
 }
 
+/* With exact gradients, where there are such: noise of differences above the tolerance
+   would ask for up to a million substeps a step. */
+static nevh_stepper *stepper_of(const plan *p) {
+    char exact[] = "exact", *item[] = {exact};
+    plan with = *p;
+    with.gradients = (list){.item = item, .count = 1};
+    nevh_stepper *s = plan_stepper(&with, "dop853");
+    if (nevh_stepper_status(s) != NEVH_ENOGRAD)
+        return s;
+    nevh_stepper_free(s);
+    return plan_stepper(p, "dop853");
+}
+
 /* Their largest changes on an orbit by dop853; NULL: it fails, or costs too much.  To
    be freed. */
 static double *changes(const plan *p, double t_end, double tolerance) {
@@ -25,7 +38,7 @@ static double *changes(const plan *p, double t_end, double tolerance) {
     trial.tolerance = &tolerance;
     trial.tolerances = 1;
     trial.native = NEVH_NATIVE_NEVER;
-    nevh_stepper *s = plan_stepper(&trial, "dop853");
+    nevh_stepper *s = stepper_of(&trial);
     invariants *kept = invariants_new(&trial);
     nevh_observer observers[] = {{invariants_observe, kept, 1},
                                  {stop_costly, s, 1}};
