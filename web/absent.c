@@ -40,22 +40,7 @@ const nevh_kernel nevh__tao_kernel = {.plan = refuse};
 #define OUTCOME(name_, takes_)                                                 \
     const nevh__outcome_type nevh__outcome_##name_ = {                         \
         .info = {.name = #name_, .takes = NEVH_OUTCOME_TAKES_##takes_}};
-OUTCOME(state, NOTHING)
-OUTCOME(t, NOTHING)
-OUTCOME(energy_error, NOTHING)
-OUTCOME(verdict, NOTHING)
-OUTCOME(first, CONDITION)
-OUTCOME(last, FORMULA)
-OUTCOME(min, FORMULA)
-OUTCOME(max, FORMULA)
-OUTCOME(mean, FORMULA)
-OUTCOME(rms, FORMULA)
-OUTCOME(crossings, SECTION)
-OUTCOME(period, SECTION)
-OUTCOME(frequency, FORMULA)
-OUTCOME(lyapunov, NOTHING)
-OUTCOME(sali, NOTHING)
-OUTCOME(megno, NOTHING)
+NEVH__OUTCOMES(OUTCOME)
 
 /* A solver of roots that finds none. */
 static const char roots[] = "GSL's solver for several unknowns";

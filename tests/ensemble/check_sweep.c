@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #define _GNU_SOURCE
 #include "../support/native.h"
+#include "ensemble/outcomes/outcome_private.h"
 #include "scene/sweep_private.h"
 #include "support.h"
 #include <gsl/gsl_sf_ellint.h>
@@ -535,4 +536,19 @@ TEST_EACH(parameters_by_lane_under_a_tolerance, VARYING *ADAPTIVE) {
     o.tolerance = 1e-7;
     o.gradient = *by_gradients[_i % GRADIENTS];
     compare_with_alone(varying[which].text, varying[which].by_lane, o);
+}
+
+/* The list, of which the live page makes outcomes that nobody asks for. */
+TEST(outcomes_are_those_of_the_list) {
+#define ENTRY(name, takes) {#name, NEVH_OUTCOME_TAKES_##takes},
+    static const struct {
+        const char *name;
+        int takes;
+    } list[] = {NEVH__OUTCOMES(ENTRY)};
+#undef ENTRY
+    for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
+        ck_assert_str_eq(nevh_outcomes()[i]->name, list[i].name);
+        ck_assert_int_eq((int)nevh_outcomes()[i]->takes, list[i].takes);
+    }
+    ck_assert_ptr_null(nevh_outcomes()[sizeof list / sizeof *list]);
 }

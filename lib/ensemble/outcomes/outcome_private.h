@@ -7,25 +7,26 @@
 #include "diagnose/chaos_private.h"
 #include <nevh/ensemble.h>
 
-/* Names of all kinds, in the order of nevh_outcome_kind; a new one is the last.
+/* Names of all kinds and what they take, in the order of nevh_outcome_kind; a new one
+   is the last.
    NAME is defined as nevh__outcome_NAME by a file in this folder. */
 #define NEVH__OUTCOMES(X)                                                      \
-    X(state)                                                                   \
-    X(t)                                                                       \
-    X(energy_error)                                                            \
-    X(verdict)                                                                 \
-    X(first)                                                                   \
-    X(last)                                                                    \
-    X(min)                                                                     \
-    X(max)                                                                     \
-    X(mean)                                                                    \
-    X(crossings)                                                               \
-    X(period)                                                                  \
-    X(frequency)                                                               \
-    X(lyapunov)                                                                \
-    X(sali)                                                                    \
-    X(megno)                                                                   \
-    X(rms)
+    X(state, NOTHING)                                                          \
+    X(t, NOTHING)                                                              \
+    X(energy_error, NOTHING)                                                   \
+    X(verdict, NOTHING)                                                        \
+    X(first, CONDITION)                                                        \
+    X(last, FORMULA)                                                           \
+    X(min, FORMULA)                                                            \
+    X(max, FORMULA)                                                            \
+    X(mean, FORMULA)                                                           \
+    X(crossings, SECTION)                                                      \
+    X(period, SECTION)                                                         \
+    X(frequency, FORMULA)                                                      \
+    X(lyapunov, NOTHING)                                                       \
+    X(sali, NOTHING)                                                           \
+    X(megno, NOTHING)                                                          \
+    X(rms, FORMULA)
 
 /* An orbit at its start, after a step, or at its end. */
 typedef struct {
@@ -56,11 +57,11 @@ typedef struct {
     double (*of_chaos)(const nevh__chaos_member *);
 } nevh__outcome_type;
 
-#define NEVH__OUTCOME_DECLARE(name)                                            \
+#define NEVH__OUTCOME_DECLARE(name, takes)                                     \
     extern const nevh__outcome_type nevh__outcome_##name;
 NEVH__OUTCOMES(NEVH__OUTCOME_DECLARE)
 
-#define NEVH__OUTCOME_ONE(name) +1
+#define NEVH__OUTCOME_ONE(name, takes) +1
 enum { NEVH__OUTCOME_COUNT = 0 NEVH__OUTCOMES(NEVH__OUTCOME_ONE) };
 
 /* outcomes.c: by number; NULL: there is none of that number. */

@@ -3,8 +3,8 @@
 #include "ensemble/outcomes/outcome_private.h"
 #include <string.h>
 
-#define TYPE(name) &nevh__outcome_##name,
-#define INFO(name) &nevh__outcome_##name.info,
+#define TYPE(name, takes) &nevh__outcome_##name,
+#define INFO(name, takes) &nevh__outcome_##name.info,
 static const nevh__outcome_type *const types[] = {NEVH__OUTCOMES(TYPE)};
 static const nevh_outcome_info *const all[] = {NEVH__OUTCOMES(INFO) NULL};
 
