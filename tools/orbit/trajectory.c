@@ -408,9 +408,11 @@ int trajectory_follow(trajectory *r, const trajectory_watch *watch) {
     double begin = seconds();
     double last = fmax(fabs(r->plan->run->t_start), fabs(r->plan->t_end));
     r->clock = (clockwork){begin + between_saves, begin, 1, watch, false};
-    if (!r->own_time && last + r->plan->dt[0] == last)
-        return show(r, r->now.at.t, r->now.q, r->now.p),
-               failed(r, r->now.at.t, "no time passes in a step");
+    if (!r->own_time && last + r->plan->dt[0] == last) {
+        int shown = show(r, r->now.at.t, r->now.q, r->now.p);
+        return shown ? shown
+                     : failed(r, r->now.at.t, "no time passes in a step");
+    }
     int status = run(r);
     if (r->clock.shown)
         fputs("\r\033[K", stderr);
