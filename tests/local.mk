@@ -207,6 +207,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_scales.sh \
 	tests/tool/nevh_reference.sh \
 	tests/tool/nevh_verdict.sh \
+	tests/tool/nevh_pictures.sh \
 	tests/tool/nevh_plot.sh \
 	tests/tool/nevh_plot_kinds.sh \
 	tests/tool/nevh_section.sh \

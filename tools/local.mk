@@ -115,7 +115,11 @@ tools_nevh_SOURCES = \
 	tools/plot/plot_layout.c \
 	tools/plot/plot_script.c \
 	tools/plot/plot_series.c \
+	tools/plot/plot_forms.c \
+	tools/plot/plot_guides.c \
 	tools/plot/plot_svg.c \
+	tools/plot/plot_svg_series.c \
+	tools/plot/plot_svg_map.c \
 	tools/plot/plot_thin.c \
 	tools/plot/plot_map.c \
 	tools/plot/plot_quote.c \

@@ -48,12 +48,10 @@ list_commands "$top"/doc/*.texi "$top/README.md" >$work/commands
 test "$(wc -l <$work/commands)" -ge 20 ||
     { command=manual; fails "has few commands: $(wc -l <$work/commands)"; }
 
-pictures=yes
-command -v gnuplot >/dev/null 2>&1 || pictures=
 while IFS= read -r command; do
-    case $pictures$command in
-    *--plot* | *--picture* | report* | portrait*)
-        test "$pictures" || continue ;;
+    case $command in
+    *.png* | *.pdf* | *.gif* | *--plot\ -*)
+        command -v gnuplot >/dev/null 2>&1 || continue ;;
     *page\ *)
         test -e "$top/web/kit.html" || continue ;; # make page makes it
     esac

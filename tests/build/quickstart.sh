@@ -152,10 +152,10 @@ exits 0
 did '^configure$'
 never 'clean|compile'
 
-# Without gnuplot, and without a way to install it, all but plots works.
+# Without gnuplot, and without a way to install it, all but plots other than SVG works.
 rm "$work/bin/gnuplot"
 exits 0
-says 'without gnuplot: --plot will not work'
+says 'without gnuplot: --plot takes FILE.svg alone'
 never apt-get
 has '^table of pendulum$'
 exit $status

@@ -82,3 +82,7 @@ in_browsers() {
     done
     test $status = 1 || test -n "$tried" || exit 77
 }
+# In the SVG that was drawn last, texts one a line.
+texts() {
+    sed -n 's/.*<text[^>]*>\(.*\)<\/text>.*/\1/p' $svg | sed 's/<[^>]*>//g'
+}

@@ -55,7 +55,8 @@ static plot_screen screen_of(int which) {
                          log,
                          log,
                          640,
-                         420};
+                         420,
+                         0.1};
 }
 
 static double to_line(pair p, pair a, pair b) {
@@ -104,8 +105,8 @@ TEST_EACH(what_is_left_out_is_within_the_error_of_what_is_drawn, 3 * CURVES) {
     size_t kept = plot_thin(&s, how, all, count, at);
     ck_assert(kept > 1 && kept <= 2 * count);
     double most = farthest(&s, all, count, at, kept, how == THIN_DOTS);
-    ck_assert_double_le(most, plot_thin_error(how));
-    ck_assert_double_le(plot_thin_error(how), 0.5);
+    ck_assert_double_le(most, plot_thin_error(how, s.detail));
+    ck_assert_double_le(plot_thin_error(how, s.detail), 0.5);
     free(all);
 }
 
@@ -149,7 +150,7 @@ TEST(turns_over_what_is_drawn_are_left_out) {
 }
 
 TEST(lines_through_the_panel_keep_both_sides_of_its_border) {
-    plot_screen s = {{0, 1}, {0, 1}, false, false, 100, 100};
+    plot_screen s = {{0, 1}, {0, 1}, false, false, 100, 100, 0.1};
     pair all[5], at[10];
     for (size_t k = 0; k < 5; k++)
         all[k] = (pair){-0.75 + 0.5 * (double)k, 0.5};
@@ -157,9 +158,26 @@ TEST(lines_through_the_panel_keep_both_sides_of_its_border) {
     ck_assert(at[2].x == 0.25);
 }
 
-TEST(series_never_become_empty) {
-    plot_screen s = screen_of(0);
-    pair away[2] = {{7, 7}, {8, 8}}, at[4];
-    for (int how = THIN_NONE; how <= THIN_DOTS; how++)
-        ck_assert_uint_ge(plot_thin(&s, (plot_thinning)how, away, 2, at), 1);
+TEST(coarser_screens_keep_fewer_points_within_their_detail) {
+    plot_screen s = screen_of(1);
+    pair *all = calloc(3 * MOST, sizeof *all), *at = all + MOST;
+    size_t count = make_curve(1, all);
+    size_t fine = plot_thin(&s, THIN_LINE, all, count, at);
+    s.detail = 1;
+    size_t kept = plot_thin(&s, THIN_LINE, all, count, at);
+    ck_assert(kept < fine / 2);
+    ck_assert_double_le(farthest(&s, all, count, at, kept, false),
+                        plot_thin_error(THIN_LINE, s.detail));
+    free(all);
+}
+
+TEST(lines_are_cut_at_the_border) {
+    pair low = {0, 0}, high = {10, 5};
+    pair a = {-10, 0}, b = {20, 6}, beside = {-1, 9}, away = {-5, 2};
+    ck_assert(plot_clip(&a, &b, low, high));
+    ck_assert(fabs(a.x) < 1e-12 && fabs(a.y - 2) < 1e-12);
+    ck_assert(fabs(b.x - 10) < 1e-12 && fabs(b.y - 4) < 1e-12);
+    ck_assert(!plot_clip(&beside, &away, low, high));
+    a = (pair){1, 1}, b = (pair){1, 1e300 * 1e300};
+    ck_assert(!plot_clip(&a, &b, low, high));
 }

@@ -111,11 +111,9 @@ if test -f web/kit.html || test -f "$srcdir/web/kit.html"; then
     four 0 page pendulum -o $work/o
     whole_page
 fi
-if command -v gnuplot >/dev/null 2>&1; then
-    four 0 run pendulum --t-end 5 --samples 3 --plot $work/p.svg
-    four 0 portrait pendulum --t-end 10 --plot $work/p.svg
-    four 0 flow pendulum --t-end 5 --plot $work/p.svg
-fi
+four 0 run pendulum --t-end 5 --samples 3 --plot $work/p.svg
+four 0 portrait pendulum --t-end 10 --plot $work/p.svg
+four 0 flow pendulum --t-end 5 --plot $work/p.svg
 
 four 1 run pendulum $long --samples 2
 four 1 compare pendulum $long

@@ -31,42 +31,40 @@ exits 0 run pendulum-filmed --data $work/frames.csv
 has '^# left out, the scene has none of that name: frame$'
 has 'energy,x_residual$'
 
-if command -v gnuplot >/dev/null; then
-    exits 0 run pendulum-filmed --set $truth --data pendulum-filmed.csv \
-        --plot-kind time --plot $work/time.svg --keep-plot-script $work/time.gp
-    grep -q 'measured' $work/time.gp || fails "draws no points"
-    test "$(grep -c '0.787520\|0\.78752' $work/time.gp)" -ge 1 ||
-        fails "draws other points"
-    exits 0 run pendulum-filmed --set $truth --data pendulum-filmed.csv \
-        --plot-kind phase --columns x:y --keep-plot-script $work/phase.gp
-    grep -q 'measured' $work/phase.gp || fails "draws no points"
-    exits 2 run pendulum-filmed --data pendulum-filmed.csv --plot-kind phase \
-        --keep-plot-script $work/none.gp
-    says 'plot-kind phase draws over each other'
-    printf 't,phi,p_phi\n0,1,0.1\n1,0.5,-0.1\n' >$work/plane.csv
-    exits 0 portrait pendulum-small --data $work/plane.csv \
-        --keep-plot-script $work/portrait.gp
-    grep -q 'measured' $work/portrait.gp || fails "draws no points"
-    exits 2 portrait pendulum-small --data $work/frames.csv \
-        --keep-plot-script $work/none.gp
-    says 'no column is one of the scene|takes columns phi and p_phi'
-    printf 'start,period(swing)\n0.5,2.04\n1,2.14\n1.5,2.33\n' >$work/periods.csv
-    exits 0 sweep pendulum --vary 'start = range(0.2, 2, 10)' --dt 0.02 --t-end 20 \
-        --outcomes 'period(swing)' --data $work/periods.csv \
-        --picture $work/periods.svg --keep-plot-script $work/periods.gp
-    grep -q 'measured' $work/periods.gp || fails "draws no points"
-    grep -q 'rms of the residuals: 0\.00' $work/periods.gp ||
-        fails "does not say how far the points are"
-    sed 's/2.33/2.5/' $work/periods.csv >$work/wrong.csv
-    exits 0 sweep pendulum --vary 'start = range(0.2, 2, 10)' --dt 0.02 --t-end 20 \
-        --outcomes 'period(swing)' --data $work/wrong.csv \
-        --picture $work/periods.svg --keep-plot-script $work/periods.gp
-    grep -q 'rms of the residuals: 0\.\(09\|1\)' $work/periods.gp ||
-        fails "does not see a point that is far off"
-    exits 2 sweep pendulum --vary 'start = range(0.2, 2, 10)' --dt 0.02 --t-end 20 \
-        --outcomes 'period(swing)' --data $work/frames.csv --picture $work/x.svg
-    says 'no column is one of these: start, period'
-fi
+exits 0 run pendulum-filmed --set $truth --data pendulum-filmed.csv \
+    --plot-kind time --plot $work/time.svg --keep-plot-script $work/time.gp
+grep -q 'measured' $work/time.gp || fails "draws no points"
+test "$(grep -c '0.787520\|0\.78752' $work/time.gp)" -ge 1 ||
+    fails "draws other points"
+exits 0 run pendulum-filmed --set $truth --data pendulum-filmed.csv \
+    --plot-kind phase --columns x:y --keep-plot-script $work/phase.gp
+grep -q 'measured' $work/phase.gp || fails "draws no points"
+exits 2 run pendulum-filmed --data pendulum-filmed.csv --plot-kind phase \
+    --keep-plot-script $work/none.gp
+says 'plot-kind phase draws over each other'
+printf 't,phi,p_phi\n0,1,0.1\n1,0.5,-0.1\n' >$work/plane.csv
+exits 0 portrait pendulum-small --data $work/plane.csv \
+    --keep-plot-script $work/portrait.gp
+grep -q 'measured' $work/portrait.gp || fails "draws no points"
+exits 2 portrait pendulum-small --data $work/frames.csv \
+    --keep-plot-script $work/none.gp
+says 'no column is one of the scene|takes columns phi and p_phi'
+printf 'start,period(swing)\n0.5,2.04\n1,2.14\n1.5,2.33\n' >$work/periods.csv
+exits 0 sweep pendulum --vary 'start = range(0.2, 2, 10)' --dt 0.02 --t-end 20 \
+    --outcomes 'period(swing)' --data $work/periods.csv \
+    --picture $work/periods.svg --keep-plot-script $work/periods.gp
+grep -q 'measured' $work/periods.gp || fails "draws no points"
+grep -q 'rms of the residuals: 0\.00' $work/periods.gp ||
+    fails "does not say how far the points are"
+sed 's/2.33/2.5/' $work/periods.csv >$work/wrong.csv
+exits 0 sweep pendulum --vary 'start = range(0.2, 2, 10)' --dt 0.02 --t-end 20 \
+    --outcomes 'period(swing)' --data $work/wrong.csv \
+    --picture $work/periods.svg --keep-plot-script $work/periods.gp
+grep -q 'rms of the residuals: 0\.\(09\|1\)' $work/periods.gp ||
+    fails "does not see a point that is far off"
+exits 2 sweep pendulum --vary 'start = range(0.2, 2, 10)' --dt 0.02 --t-end 20 \
+    --outcomes 'period(swing)' --data $work/frames.csv --picture $work/x.svg
+says 'no column is one of these: start, period'
 exits 2 sweep pendulum --vary 'start = 1, 2' --data $work/frames.csv
 says 'over a --picture'
 exits 2 run pendulum-filmed --data pendulum-filmed.csv --samples 5

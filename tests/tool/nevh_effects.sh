@@ -70,25 +70,23 @@ exits 0 effects $work/parts.nevh --impact --integrators verlet
 has "none of the scene's integrators fits"
 
 # In a picture, a panel for each effect: what the table says, and both orbits.
-if gnuplot --version >/dev/null 2>&1; then
-    exits 0 effects $work/parts.nevh --impact --plot $work/parts.svg \
-        --keep-plot-script $work/parts.gp
-    has '^ twist +off +gauss4'
-    grep -q '>twist: [0-9.e+-]* at most<' $work/parts.svg || fails "draws no twist"
-    test "$(grep -c '^\$series' $work/parts.gp)" -eq 14 || fails "draws not two orbits each"
-    # The orbit with twist is another one, the one with nothing the same.
-    same() {
-        heading=$(grep -n "^set title \"$1: " $work/parts.gp | cut -d: -f1)
-        first=$(tail -n +$heading $work/parts.gp | grep -m 1 -o 'series[0-9]*')
-        next=series$((${first#series} + 1))
-        for s in $first $next; do
-            sed -n "/^.$s <</,/^EOD/p" $work/parts.gp | tail -n +2 >$work/$s
-        done
-        test -s $work/$next && cmp -s $work/$first $work/$next
-    }
-    same nothing || fails "draws what nothing changes"
-    same twist && fails "draws twist without a difference"
-fi
+exits 0 effects $work/parts.nevh --impact --plot $work/parts.svg \
+    --keep-plot-script $work/parts.gp
+has '^ twist +off +gauss4'
+grep -q '>twist: [0-9.e+-]* at most<' $work/parts.svg || fails "draws no twist"
+test "$(grep -c '^\$series' $work/parts.gp)" -eq 14 || fails "draws not two orbits each"
+# The orbit with twist is another one, the one with nothing the same.
+same() {
+    heading=$(grep -n "^set title \"$1: " $work/parts.gp | cut -d: -f1)
+    first=$(tail -n +$heading $work/parts.gp | grep -m 1 -o 'series[0-9]*')
+    next=series$((${first#series} + 1))
+    for s in $first $next; do
+        sed -n "/^.$s <</,/^EOD/p" $work/parts.gp | tail -n +2 >$work/$s
+    done
+    test -s $work/$next && cmp -s $work/$first $work/$next
+}
+same nothing || fails "draws what nothing changes"
+same twist && fails "draws twist without a difference"
 exits 2 effects pendulum --plot $work/none.svg
 says 'with --impact --plot'
 

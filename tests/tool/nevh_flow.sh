@@ -131,21 +131,19 @@ refuses 'dt = 2000 is longer' pendulum --dt 2000
 refuses 'FILE.svg' pendulum --plot nowhere.doc
 
 # The picture: panels an integrator and time.
-if command -v gnuplot >/dev/null 2>&1; then
-    exits 0 flow pendulum --integrators verlet,euler --t-end 10 \
-        --plot $work/flow.svg --keep-plot-script $work/script
-    test -s $work/flow.svg || fails "draws nothing"
-    test "$(grep -c '^set lmargin at' $work/script)" -eq 10 ||
-        fails "has not 10 panels"
-    grep -q 'filledcurves closed' $work/script || fails "fills no shape"
-    # A panel whose shape has left it says so.
-    test "$(sed -n 's/^set title "t = \([0-9.]*\) s, .*, outside".*/\1/p' $work/script)" = 10 ||
-        { fails "has other panels whose shapes are outside"; grep '^set title' $work/script; }
-    exits 0 flow pendulum --integrators verlet,euler --at 0,10 \
-        --plot $work/flow.svg --keep-plot-script $work/script
-    grep -q 't = 10 s, area .*, outside' $work/script ||
-        fails "leaves a panel empty"
-fi
+exits 0 flow pendulum --integrators verlet,euler --t-end 10 \
+    --plot $work/flow.svg --keep-plot-script $work/script
+test -s $work/flow.svg || fails "draws nothing"
+test "$(grep -c '^set lmargin at' $work/script)" -eq 10 ||
+    fails "has not 10 panels"
+grep -q 'filledcurves closed' $work/script || fails "fills no shape"
+# A panel whose shape has left it says so.
+test "$(sed -n 's/^set title "t = \([0-9.]*\) s, .*, outside".*/\1/p' $work/script)" = 10 ||
+    { fails "has other panels whose shapes are outside"; grep '^set title' $work/script; }
+exits 0 flow pendulum --integrators verlet,euler --at 0,10 \
+    --plot $work/flow.svg --keep-plot-script $work/script
+grep -q 't = 10 s, area .*, outside' $work/script ||
+    fails "leaves a panel empty"
 
 # Nothing is said of areas that no run has carried on.
 printf '[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = -1/x\n[run]

@@ -22,10 +22,6 @@ refuses 'takes FILE.svg, FILE.png or FILE.pdf' pendulum-periods \
 refuses 'is of --picture' pendulum-periods --keep-plot-script $work/gp
 exits 2 run pendulum --picture $work/a.svg
 says 'it is for sweep$'
-if ! command -v gnuplot >/dev/null 2>&1; then
-    echo "there is no gnuplot"
-    exit $((status ? 1 : 77))
-fi
 refuses 'over one direction, or two' pendulum --outcomes t \
     --vary 'phi = normal(1, 0.1)' --vary 'p_phi = normal(1, 0.1)' \
     --vary 'count = 1' --picture $work/a.svg --t-end 1

@@ -3,8 +3,8 @@
 
 . "${srcdir:-.}/tests/support/nevh_support.sh"
 
-command -v gnuplot >/dev/null 2>&1 ||
-    { echo "gnuplot is missing"; exit 77; }
+gnuplot=
+command -v gnuplot >/dev/null 2>&1 && gnuplot=yes
 case $nevh in
 /*) ;;
 *) nevh=$(pwd)/$nevh ;;
@@ -14,17 +14,13 @@ draws() {
     exits 0 "$@"
     test -s $work/err && { fails "says something"; cat $work/err; }
 }
-# In the SVG that was drawn last, texts one a line.
 svg=$work/out.svg
-texts() {
-    sed -n 's/.*<text>\(.*\)<\/text>.*/\1/p' $svg | sed 's/<[^>]*>//g'
-}
 shows() {
     texts | grep -Fqx -e "$1" || { fails "does not show '$1'"; texts; }
 }
 # series NAME: the drawing of that series.
 series() {
-    sed -n "/<title>$1<\/title>/,/<g id=/p" $svg
+    sed -n "/<title>$1<\/title>/,/<\/g>/p" $svg
 }
 
 # points N: how many of the series N the script that was kept last has.
@@ -46,10 +42,11 @@ shows 'gradient central4; t = 0 ... 1000 s; errors relative to 4.078 J, the larg
 for name in verlet rk4 euler; do
     test "$(texts | grep -cx $name)" = 1 ||
         fails "does not have $name in the legend once"
-    series $name | grep -q '<path ' || fails "draws no line of $name"
+    test "$(series $name | grep -c '<title>')" = 2 ||
+        fails "does not draw $name in both panels"
+    test "$(series $name | grep -c '<path ')" = 4 ||
+        fails "draws no line of $name, or no marks"
 done
-test "$(grep -c "id='plot_spacer\|<title>gnuplot_plot_[0-9]b</title>" $svg)" \
-    = 3 || fails "does not draw 3 series in the second panel"
 # Decades, on one axis of each panel; a legend beside what is drawn.
 for decade in -4 -2 0; do
     test "$(texts | grep -cx "10$decade")" = 2 || fails "lacks 10^$decade"
@@ -68,14 +65,17 @@ awk '/^\$series/ { n++ } n == 1 && NF == 2 { if ($2 > max) max = $2
 test "$(wc -l <$work/out.gp)" -lt 2200 || fails "draws too many points"
 
 # The script draws the same again, from its own data.
-cp $svg $work/first.svg
-rm $svg
-gnuplot $work/out.gp >$work/again 2>&1 || { fails "keeps a script that fails";
-    cat $work/again; }
-cmp $svg $work/first.svg || fails "keeps a script that draws something else"
-draws compare oscillator --t-end 9 --dt 0.1 --keep-plot-script $work/alone.gp
-gnuplot -e "set terminal dumb" $work/alone.gp | grep -q verlet ||
-    fails "keeps a script that draws nothing"
+if test -n "$gnuplot"; then
+    draws compare pendulum --integrators verlet,rk4 --t-end 10 --plot $work/out.png \
+        --keep-plot-script $work/again.gp
+    mv $work/out.png $work/first.png
+    gnuplot $work/again.gp >$work/again 2>&1 || { fails "keeps a script that fails";
+        cat $work/again; }
+    cmp $work/out.png $work/first.png || fails "keeps a script that draws something else"
+    draws compare oscillator --t-end 9 --dt 0.1 --keep-plot-script $work/alone.gp
+    gnuplot -e "set terminal dumb" $work/alone.gp | grep -q verlet ||
+        fails "keeps a script that draws nothing"
+fi
 
 # A legend has a row for each series, also where a panel is not as high.
 draws compare pendulum --t-end 2 --dt 0.1,0.05 --plot $svg --integrators \
@@ -393,12 +393,13 @@ exits 2 run pendulum --plot-kind portrait --plot $svg
 says 'phase, energy, configuration, time, order or animation'
 exits 2 run pendulum --plot - --format csv
 says 'with -o'
+
+if test -n "$gnuplot"; then # other media; files are there when they are whole
 exits 0 run pendulum --t-end 5 --plot -
 has 'p_phi'
 exits 0 run pendulum -o $work/rows.csv --t-end 5 --plot -
 has 'p_phi'
 
-# Other media; files are there when they are whole.
 for medium in png pdf; do
     draws compare oscillator --t-end 9 --dt 0.1 --plot $work/x.$medium
     head -c 4 $work/x.$medium | tr -d '\211' |
@@ -414,6 +415,7 @@ lacks "$(printf '\f')"
 COLUMNS=120 draws compare oscillator --t-end 9 --dt 0.1 --quiet --plot -
 has '^.{105,120}$'
 lacks '^.{121}.*[*#|]'
+fi
 
 # Texts are no more than texts.
 cat >$work/weird.nevh <<'END'
@@ -441,10 +443,11 @@ for name in "it's.svg" "''.svg" "$line" '|touch touched;.svg' '$(touch touched) 
     test -s "$work/$name" || fails "does not draw $name"
     svg=$work/drawn.svg
     mv "$work/$name" $svg
-    shows "'' it's y'' \`touch HERE\` \"\$(touch HERE)\" {/S a}_b^2 %d \\n &lt;b>&amp;$acute @x \\"
+    shows "'' it's y'' \`touch HERE\` &quot;\$(touch HERE)&quot; {/S a}_b^2 %d \\n &lt;b&gt;&amp;$acute @x \\"
     shows "t (''y'_r''\\)"
+    test -n "$gnuplot" || continue
     (cd $work && gnuplot weird.gp 2>err) || fails "keeps a script that fails"
-    cmp $svg "$work/$name" || fails "keeps a script that draws elsewhere"
+    test -s "$work/$name" || fails "keeps a script that draws elsewhere"
 done
 test -e $work/HERE && fails "ran a title"
 test -e $work/touched && fails "ran the name of a file"
@@ -499,7 +502,7 @@ fake() {
 fakes() {
     command="compare with a gnuplot that does: $1"
     PATH=$(pwd)/$work/bin $limit "$nevh" compare oscillator --t-end 9 \
-        --dt 0.1 --plot $work/fake.svg >$work/out 2>$work/err </dev/null
+        --dt 0.1 --plot $work/fake.png >$work/out 2>$work/err </dev/null
     code=$?
     test $code = 2 || { fails "exit status $code"; cat $work/err; }
     test "$(wc -l <$work/err)" = 1 || { fails "says more"; cat $work/err; }
@@ -525,7 +528,7 @@ has 'verlet'
 fake 'exit 0'
 fakes 'draw nothing'
 says 'gnuplot drew nothing'
-fake 'test "$1" = --version || echo "<svg> <path d="'
+fake 'test "$1" = --version || echo "PNG"'
 fakes 'draw a part, as where the disk is full'
 says 'gnuplot drew nothing, or a part'
 fake 'test "$1" = --version || kill -9 $$'
@@ -533,7 +536,7 @@ fakes 'die'
 says 'signal 9'
 fake 'test "$1" = --version && exit; while read x; do echo $x >&2; done; exit 3'
 fakes 'talk much'
-says 'exit status 3\): set terminal svg'
+says 'exit status 3\): set terminal pngcairo'
 # A name that is too long for its axis is cut, its factor is not.
 cat >$work/long.nevh <<'END'
 [coordinates]

@@ -3,12 +3,7 @@
 
 . "${srcdir:-.}/tests/support/nevh_support.sh"
 
-command -v gnuplot >/dev/null 2>&1 ||
-    { echo "gnuplot is missing"; exit 77; }
 svg=$work/out.svg
-texts() {
-    sed -n 's/.*<text>\(.*\)<\/text>.*/\1/p' $svg | sed 's/<[^>]*>//g'
-}
 # slope NAME PANEL: as the legend has it.
 slope() {
     texts | sed -n "s/^$1: slopes* //p" | cut -d , -f $2
@@ -58,6 +53,15 @@ awk '/^set xrange/ { gsub("[^0-9.e-]", " "); t = $NF }
     END { exit far }' $work/out.gp ||
     { fails "shows what is later"; grep '^set [xy]range' $work/out.gp; }
 
+exits 2 run kepler --plot-kind animation --plot $svg
+says 'animation takes --plot FILE.gif'
+exits 2 run kepler --plot $work/out.gif
+says 'gif is for nevh run --plot-kind animation'
+exits 2 run henon-heiles --plot-kind animation --plot $work/out.gif
+says 'no .picture. to plot'
+
+command -v gnuplot >/dev/null 2>&1 || { echo "no gnuplot draws a .gif"; exit $((status ? 1 : 77)); }
+
 # An animation: frames of two orbits, each with its time; both begin alike, and at
 # the end the one that is not symplectic is elsewhere.
 exits 0 run kepler --integrators verlet,rk4 --dt 0.15 --t-end 30 \
@@ -81,11 +85,5 @@ exits 0 run kepler --plot-kind animation --plot $work/out.gif --quiet
 exits 1 run double-pendulum --integrators rk4,midpoint --dt 0.1 --t-end 5 \
     --plot-kind animation --plot $work/out.gif --keep-plot-script $work/out.gp
 grep -q 'midpoint, ended at t = [0-9]' $work/out.gp || fails "does not say that it ended"
-exits 2 run kepler --plot-kind animation --plot $svg
-says 'animation takes --plot FILE.gif'
-exits 2 run kepler --plot $work/out.gif
-says 'gif is for nevh run --plot-kind animation'
-exits 2 run henon-heiles --plot-kind animation --plot $work/out.gif
-says 'no .picture. to plot'
 
 exit $status

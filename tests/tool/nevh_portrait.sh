@@ -9,10 +9,6 @@ exits 2 portrait pendulum --plot $work/a.doc
 says 'FILE.svg'
 exits 2 portrait pendulum --plot $work/a.svg -o $work/a.csv
 says 'writes no rows'
-if ! command -v gnuplot >/dev/null 2>&1; then
-    echo "there is no gnuplot"
-    exit $((status ? 1 : 77))
-fi
 exits 2 portrait pendulum --vary 'g = 1, 2' --plot $work/a.svg
 says 'change more than where members start'
 exits 2 portrait elastic-pendulum --plot $work/a.svg --section nothing

@@ -137,7 +137,7 @@ const option_row option_rows[] = {
     {"no-cache", NULL, FLAG(native.no_cache), "NATIVE",
      "keep no compiled steps, and use none that were kept"},
     {"plot", "FILE", FILE_NAME(plot.file), "PLOT",
-     "draw FILE.svg, .png or .pdf, or - in the terminal"},
+     "draw FILE.svg; by gnuplot .png or .pdf, or - in the terminal"},
     {"plot-kind", "KIND", CHOICE(plot_kind, plot.kind), NULL,
      "of run: phase (the default), time, energy, configuration or animation (a "
      ".gif of that); of compare "

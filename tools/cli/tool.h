@@ -6,8 +6,8 @@
 
    Commands of scenes begin with a plan (plan.h): scene, options and
    defaults made into what is to be run.  Most end with a page: notes, a table
-   (table.c), words.  Those that draw fill a plot (plot.h), which gnuplot
-   draws.  FILE_private.h is shared by the files that are named FILE_*.c.
+   (table.c), words.  Those that draw fill a plot (plot.h), which is
+   written as SVG or drawn by gnuplot.  FILE_private.h is shared by the files that are named FILE_*.c.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef NEVH_TOOL_H
 #define NEVH_TOOL_H

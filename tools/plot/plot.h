@@ -1,4 +1,4 @@
-/* nevh: plots, drawn by gnuplot.
+/* nevh: plots: SVG is written, other pictures are drawn by gnuplot.
    SPDX-License-Identifier: GPL-3.0-or-later
 
    Texts may hold anything: no shell and no gnuplot ever reads them as more than
@@ -99,11 +99,9 @@ void section_plot(plot **, const plan *, const nevh_scene_section *,
                   size_t points, const double numbers[], const size_t members[],
                   const char *heading);
 
-/* That gnuplot is at hand; plot_check says more where it is not. */
-bool plot_is_possible(void);
 bool plot_wanted(const options *); /* --plot or --keep-plot-script */
 /* That plot_write will work as far as can be told: known ending, files that can
-   be written, gnuplot at hand.  To be called before the long work, and before
+   be written, gnuplot at hand where the picture is not SVG.  To be called before the long work, and before
    any output is opened.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int plot_check(const options *);

@@ -66,25 +66,14 @@ static int refuse_end(int status, FILE *messages) {
     return refused;
 }
 
-bool plot_is_possible(void) {
-    char *const arguments[] = {"gnuplot", "--version", NULL};
-    FILE *nothing = fopen("/dev/null", "r+");
-    pid_t child;
-    bool can = nothing && !start(arguments, fileno(nothing), fileno(nothing),
-                                 fileno(nothing), &child);
-    can = can && await(child) == 0;
-    if (nothing)
-        fclose(nothing);
-    return can;
-}
-
 static int run(char *const arguments[], FILE *in, FILE *out, FILE *messages) {
     pid_t child;
     int wrong =
         start(arguments, fileno(in), fileno(out), fileno(messages), &child);
     if (wrong == ENOENT)
-        return tool_refuse("plots need gnuplot, which was not found (Debian "
-                           "has it as gnuplot-nox)");
+        return tool_refuse(
+            "pictures other than .svg need gnuplot, which was not "
+            "found (Debian has it as gnuplot-nox)");
     if (wrong)
         return tool_refuse("gnuplot cannot be run: %s", strerror(wrong));
     output_child(child);
@@ -118,9 +107,9 @@ static const struct {
     const char *bytes;
     size_t count;
 } ends[] = {
-    [PLOT_SVG] = {"</svg>", 6}, [PLOT_PNG] = {"IEND", 4},
-    [PLOT_PDF] = {"%%EOF", 5},  [PLOT_GIF] = {"\0;", 2},
-    [PLOT_TEXT] = {"", 0},      [PLOT_SCREEN] = {"", 0},
+    [PLOT_SVG] = {"", 0},      [PLOT_PNG] = {"IEND", 4},
+    [PLOT_PDF] = {"%%EOF", 5}, [PLOT_GIF] = {"\0;", 2},
+    [PLOT_TEXT] = {"", 0},     [PLOT_SCREEN] = {"", 0},
 };
 
 /* Of what is no file that can be read again it is not known. */

@@ -2,23 +2,35 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot_private.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-static const double title_letter = 0.63 * 14; /* pixels, at scale 1 */
+static const double title_letter = 0.63 * PLOT_FONT; /* pixels, at scale 1 */
 static const double narrow_width = 360;
-enum { TITLE_LINES = 2, NOTE_LINES = 3, NARROW_LINES = 9 };
+enum { TITLE_LINES = 2, NOTE_LINES = 3, NARROW_LINES = PLOT_MOST_LINES / 2 };
+
+/* Letters of XML: no surrogates, U+FFFE, U+FFFF, and none longer than need be. */
+static bool is_letter(unsigned long code, size_t more) {
+    static const unsigned long least[] = {0, 0x80, 0x800, 0x10000};
+    return code >= least[more] && code <= 0x10ffff &&
+           !(code >= 0xd800 && code < 0xe000) && code != 0xfffe &&
+           code != 0xffff;
+}
 
 size_t plot_letter_bytes(const unsigned char *c) {
     size_t more = *c >= 0xf0 && *c < 0xf5   ? 3
                   : *c >= 0xe0 && *c < 0xf0 ? 2
                   : *c >= 0xc2 && *c < 0xe0 ? 1
                                             : 0;
+    unsigned long code = more ? *c & (0x3fu >> more) : *c;
     if (*c >= 0x80 && more == 0)
         return 0;
-    for (size_t i = 1; i <= more; i++)
+    for (size_t i = 1; i <= more; i++) {
         if ((c[i] & 0xc0) != 0x80)
             return 0;
-    return more + 1;
+        code = code << 6 | (c[i] & 0x3fu);
+    }
+    return is_letter(code, more) ? more + 1 : 0;
 }
 
 size_t plot_letters(const char *text) {
@@ -30,7 +42,7 @@ size_t plot_letters(const char *text) {
     return count;
 }
 
-size_t plot_line_bytes(const char *text, size_t letters) {
+static size_t line_bytes(const char *text, size_t letters) {
     size_t at = 0, space = 0;
     for (size_t count = 0; text[at] && count < letters; count++) {
         size_t bytes = plot_letter_bytes((const unsigned char *)text + at);
@@ -156,7 +168,7 @@ static double room_beside(const plot *p, const layout *l, const target *t) {
 static size_t lines_of(const char *text, size_t letters, size_t most) {
     size_t lines = 0;
     for (; text && *text && lines < most; lines++) {
-        text += plot_line_bytes(text, letters);
+        text += line_bytes(text, letters);
         text += *text == ' ';
     }
     return lines;
@@ -170,12 +182,12 @@ static double title_scale(const plot *p, const layout *l) {
     return fmin(fmax(fitting, smallest), largest);
 }
 
-size_t plot_title_letters(const layout *l) {
+static size_t title_letters(const layout *l) {
     double letter = l->letter == 1 ? 1 : title_letter * l->title_scale;
     return (size_t)fmax(l->width / letter, 20);
 }
 
-size_t plot_note_letters(const layout *l) {
+static size_t note_letters(const layout *l) {
     double letter = l->letter == 1 ? 1 : 0.6 * PLOT_NOTE_FONT;
     return (size_t)fmax(l->width / letter - 2, 20);
 }
@@ -218,9 +230,9 @@ layout plot_lay_out(const plot *p, const target *t) {
     }
     l.width = (l.left + l.panel_width + l.right) * (double)l.columns + l.legend;
     l.title_scale = title_scale(p, &l);
-    l.title_lines = lines_of(p->title, plot_title_letters(&l),
+    l.title_lines = lines_of(p->title, title_letters(&l),
                              t->narrow ? NARROW_LINES : TITLE_LINES);
-    l.note_lines = lines_of(p->note, plot_note_letters(&l),
+    l.note_lines = lines_of(p->note, note_letters(&l),
                             t->narrow ? NARROW_LINES : NOTE_LINES);
     l.title = room_above(p, &l);
     l.height = (l.top + l.panel_height + l.bottom) * (double)l.rows + l.title;
@@ -234,4 +246,80 @@ layout plot_lay_out(const plot *p, const target *t) {
     l.width = ceil(l.width); /* gnuplot takes whole pixels */
     l.height = ceil(l.height);
     return l;
+}
+
+pair plot_panel_at(size_t number, const layout *l) {
+    double column = (double)(number % l->columns);
+    double row = (double)(number / l->columns);
+    return (pair){l->left + column * (l->left + l->panel_width + l->right),
+                  l->title + l->top +
+                      row * (l->top + l->panel_height + l->bottom)};
+}
+
+pair plot_legend_at(const layout *l) {
+    return l->narrow ? (pair){l->letter, l->height - l->legend_height}
+                     : (pair){l->width - l->legend, l->title + l->top};
+}
+
+plot_screen plot_screen_of(const plot *p, size_t number, const layout *l) {
+    axes a = plot_axes(p, number, l, false);
+    return (plot_screen){a.x.shown,      a.y.shown,       a.x.log, a.y.log,
+                         l->panel_width, l->panel_height, 0};
+}
+
+static text_line *add_lines(text_line *to, const char *text, size_t letters,
+                            size_t lines, double first, double apart,
+                            double size) {
+    for (size_t i = 0; i < lines; i++) {
+        size_t bytes = line_bytes(text, letters);
+        *to++ = (text_line){text, bytes, i + 1 == lines && text[bytes],
+                            first + apart * (double)i, size};
+        text += bytes;
+        text += *text == ' ';
+    }
+    return to;
+}
+
+size_t plot_title_lines(const plot *p, const layout *l,
+                        text_line lines[PLOT_MOST_LINES]) {
+    bool text = l->letter == 1;
+    double apart = (text ? 1 : 1.2) * l->line;
+    double begin = p->title && *p->title
+                       ? 0.9 * l->line + apart * (double)l->title_lines
+                       : 0;
+    text_line *end =
+        add_lines(lines, p->title, title_letters(l), l->title_lines,
+                  1.1 * l->line, apart, PLOT_FONT * l->title_scale);
+    end = add_lines(end, p->note, note_letters(l), l->note_lines, begin,
+                    (text ? 1 : 0.95) * l->line, PLOT_NOTE_FONT);
+    return (size_t)(end - lines);
+}
+
+/* A third of so many letters is the name's at least; the unit, which begins with a
+   factor, has the others.  To be freed. */
+static char *shorter_label(const char *label, size_t letters) {
+    const char *unit = strrchr(label, '(');
+    size_t name = unit ? plot_letters(label) - plot_letters(unit) : 0;
+    size_t least = letters / 3, unit_and_dots = plot_letters(label) - name + 4;
+    size_t kept =
+        letters > unit_and_dots + least ? letters - unit_and_dots : least;
+    size_t bytes = 0;
+    if (!unit || plot_letters(label) <= letters || name <= kept)
+        return text_print("%s", label);
+    while (kept--)
+        bytes += plot_letter_bytes((const unsigned char *)label + bytes);
+    return text_print("%.*s... %s", (int)bytes, label, unit);
+}
+
+char *plot_fit_label(const char *label, double room, double *size) {
+    static const double letter = 0.57, smallest = 0.75;
+    double letters = fmax(label ? (double)plot_letters(label) : 0, 1);
+    double scale =
+        fmin(fmax(room / (letter * PLOT_FONT * letters), smallest), 1);
+    double most = fmax(room / (letter * PLOT_FONT * scale), 8);
+    char *whole = shorter_label(label ? label : "", (size_t)most);
+    char *text = plot_shortened(whole, (size_t)most);
+    free(whole);
+    *size = scale * PLOT_FONT;
+    return text;
 }

@@ -3,6 +3,9 @@
 #include "plot_private.h"
 #include <math.h>
 
+const unsigned plot_palette[PLOT_PALETTE] = {0x00204D, 0x31446B, 0x666970,
+                                             0x958F78, 0xCBBA69, 0xFFEA46};
+
 /* Whether values are equal steps apart, as pixels are. */
 static bool is_even(size_t count, const double x[]) {
     static const double rounding = 1e-6;
@@ -18,11 +21,15 @@ static bool is_image(const field_map *m) {
     return is_even(m->columns, m->x) && is_even(m->rows, m->y);
 }
 
-/* The cell of value i ends half way to its neighbours. */
-static void print_cell(FILE *f, size_t count, const double x[], size_t i) {
+range plot_map_cell(size_t count, const double x[], size_t i) {
     double below = i ? x[i] - x[i - 1] : x[1] - x[0];
     double above = i + 1 < count ? x[i + 1] - x[i] : below;
-    fprintf(f, " %.15g %.15g", x[i] - below / 2, x[i] + above / 2);
+    return (range){x[i] - below / 2, x[i] + above / 2};
+}
+
+static void print_cell(FILE *f, size_t count, const double x[], size_t i) {
+    range r = plot_map_cell(count, x, i);
+    fprintf(f, " %.15g %.15g", r.low, r.high);
 }
 
 void plot_map_values(const field_map *m, FILE *f) {

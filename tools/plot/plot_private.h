@@ -38,8 +38,15 @@ typedef struct {
     range shown;
 } field_map;
 
-/* plot_map.c: the data block $map, and how it is drawn: as pixels, where values
-   are equal steps apart, else as cells that meet half way. */
+/* plot_map.c */
+/* Cividis [J. R. Nunez, C. R. Anderton, R. S. Renslow, PLoS ONE 13 (2018)
+   e0199239]: its lightness grows evenly, also for those who see few colours. */
+enum { PLOT_PALETTE = 6 };
+extern const unsigned plot_palette[PLOT_PALETTE];
+/* The cell of value i ends half way to its neighbours. */
+range plot_map_cell(size_t count, const double x[], size_t i);
+/* The data block $map of gnuplot, and how it is drawn: as pixels, where values
+   are equal steps apart, else as cells. */
 void plot_map_values(const field_map *, FILE *);
 void plot_map_style(const field_map *, FILE *);
 
@@ -101,13 +108,17 @@ typedef struct {
     size_t columns, lines; /* of PLOT_TEXT */
     bool colours;          /* of PLOT_TEXT */
     const char *file;      /* NULL: gnuplot's stdout */
-    bool on_page; /* of a report: small, without points that are not seen */
-    bool narrow;  /* for a telephone: panels and legend one below the other */
+    bool narrow; /* for a telephone: panels and legend one below the other */
 } target;
 void plot_script(const plot *, const target *, FILE *);
 
 /* plot_layout.c */
-enum { PLOT_LONGEST_NAME = 48 };
+enum {
+    PLOT_LONGEST_NAME = 48,
+    PLOT_FONT = 14, /* pixels */
+    PLOT_NOTE_FONT = 11,
+    PLOT_MOST_LINES = 18 /* of the title and the note */
+};
 /* Lengths in pixels, or in letters and lines of text. */
 typedef struct {
     double width, height, letter, line, legend;
@@ -132,27 +143,30 @@ bool plot_in_legend(const plot *, size_t series);
 /* Bytes of the letter, as UTF-8 has them; 0 where it is none. */
 size_t plot_letter_bytes(const unsigned char *);
 size_t plot_letters(const char *text);
-
-/* plot_series.c: looks, points and curves in the language of gnuplot. */
-
-void plot_script_looks(FILE *, const plot *);
-
-/* The points of all series; those that cannot be told apart are left out where
-   thins is set. */
-void plot_script_data(FILE *, const plot *, const layout *, bool thins);
-
-/* Names at the ends of the guides of a panel. */
-void plot_script_guides(FILE *, const plot *, size_t number, const layout *);
-
-/* The curves of a panel, with the legend of the whole plot if need be. */
-void plot_script_series(FILE *, const plot *, size_t number, bool legend,
-                        bool text);
+/* Upper left corners, from that of the picture. */
+pair plot_panel_at(size_t number, const layout *);
+pair plot_legend_at(const layout *);
+/* The lines of the title and the note. */
+typedef struct {
+    const char *text;
+    size_t bytes;
+    bool cut;
+    double middle, size; /* middle: from the top */
+} text_line;
+size_t plot_title_lines(const plot *, const layout *,
+                        text_line lines[PLOT_MOST_LINES]);
+/* A label that is smaller, or shorter, where it has no room otherwise: a third of
+   the letters is the name's at least; the unit, which begins with a factor, has the
+   others.  To be freed.
+   size  out: of its letters */
+char *plot_fit_label(const char *label, double room, double *size);
 
 /* plot_thin.c: fewer points, which look the same on a panel of that size. */
 typedef struct {
     range x, y;
     bool log_x, log_y;
     double width, height; /* pixels */
+    double detail;        /* what is smaller is not shown: pixels */
 } plot_screen;
 typedef enum {
     THIN_NONE,
@@ -162,30 +176,83 @@ typedef enum {
 } plot_thinning;
 /* How far, in pixels, a point of what is left out, within the panel, is at most
    from what is drawn. */
-double plot_thin_error(plot_thinning);
+double plot_thin_error(plot_thinning, double detail);
 /* to  has room for twice as many; points of `from`, and breaks
    returns  how many they are */
 size_t plot_thin(const plot_screen *, plot_thinning, const pair from[],
                  size_t count, pair to[]);
 pair plot_in_pixels(const plot_screen *, pair);
+/* Whether a part of the line from a to b is in a rectangle; they become that part. */
+bool plot_clip(pair *a, pair *b, pair low, pair high);
+plot_screen plot_screen_of(const plot *, size_t panel, const layout *);
+
+/* plot_forms.c: how series look. */
+#define PLOT_USUAL_SIZE 0.7
+enum { /* as gnuplot numbers them: one more is filled */
+       PLOT_CROSS = 2,
+       PLOT_SQUARE = 4,
+       PLOT_CIRCLE = 6,
+       PLOT_DISC,
+       PLOT_TRIANGLE,
+       PLOT_DIAMOND = 12
+};
+typedef double plot_dash_lengths[5]; /* line, gap ..., 0; of a width of 2 */
+typedef struct {
+    char colour[16];
+    bool own;     /* the colour is that of the look */
+    double width; /* of the line; 0: none */
+    const double *dash;
+    int mark;         /* 0: none */
+    double size;      /* of the mark, as gnuplot has it */
+    size_t every;     /* so many points have a mark */
+    double opacity;   /* of what is enclosed; 0: not filled */
+    const char *edge; /* colour round what is filled; NULL: the same */
+    bool many;        /* marks over others need not be drawn */
+} plot_look;
+plot_look plot_look_of(const plot *, const series *);
+void plot_colour(const plot *, size_t look, char text[16]);
+const double *plot_look_dash(const plot *, size_t look);
+int plot_look_mark(size_t look);
+
+/* plot_guides.c: names at the ends of the guides of a panel, in its pixels.
+   names    has room for as many as there are series
+   returns  how many have a place */
+typedef struct {
+    double left, right, middle;
+    const char *text;
+} guide_name;
+size_t plot_guide_names(const plot *, size_t panel, const layout *,
+                        guide_name names[]);
+
+/* plot_series.c: looks, points and curves in the language of gnuplot. */
+void plot_script_looks(FILE *, const plot *);
+void plot_script_data(FILE *, const plot *);
+void plot_script_guides(FILE *, const plot *, size_t number, const layout *);
+/* The curves of a panel, with the legend of the whole plot if need be. */
+void plot_script_series(FILE *, const plot *, size_t number, bool legend,
+                        bool text);
 
 /* plot_quote.c: a text in double quotes: its first `bytes`, and `more`; at most
    so many letters; with a command around it. */
 void plot_quote_part(FILE *, const char *text, size_t bytes, const char *more);
 void plot_quote(FILE *, const char *text, size_t longest);
+char *plot_shortened(const char *text, size_t longest); /* to be freed */
 void plot_quote_line(FILE *, const char *before, const char *text,
                      double length, const char *after);
-/* The bytes of the text up to where a line of so many letters ends, at a space
-   if there is one. */
-size_t plot_line_bytes(const char *text, size_t letters);
-enum { PLOT_NOTE_FONT = 11 };
-size_t plot_note_letters(const layout *);  /* of a line of the note */
-size_t plot_title_letters(const layout *); /* of a line of the title */
 
-/* plot_svg.c: the same picture of SVG in fewer bytes. */
-void plot_svg_shorten(FILE *from, FILE *to);
-/* The same picture, where titles are text of XML. */
-void plot_svg_copy(FILE *from, FILE *to);
+/* plot_svg.c: the whole as SVG, of no more bytes than a page can bear: detail goes
+   before. */
+enum { PLOT_MOST_BYTES = 400000 };
+void plot_svg(const plot *, const target *, FILE *);
+
+/* plot_svg_series.c: what is in a panel.
+   at  its upper left corner */
+void plot_svg_series(FILE *, const plot *, const series *, const plot_screen *,
+                     pair at);
+/* A line of the legend that begins there. */
+void plot_svg_sample(FILE *, const plot *, const series *, pair at);
+void plot_svg_map(FILE *, const field_map *, const plot_screen *, pair at);
+void plot_svg_palette(FILE *, double left, double top, double height);
 
 /* plot_gnuplot.c: gnuplot --version, and a script to be drawn to a file.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */

@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot_private.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* In double quotes a backslash, a quote and a backquote (a command, to gnuplot)
@@ -38,10 +39,17 @@ static size_t bytes_of(const char *text, size_t letters) {
     return at;
 }
 
-void plot_quote(FILE *f, const char *text, size_t longest) {
+char *plot_shortened(const char *text, size_t longest) {
     bool cut = plot_letters(text) > longest;
-    plot_quote_part(f, text, bytes_of(text, cut ? longest - 3 : longest),
-                    cut ? "..." : "");
+    return text_print("%.*s%s",
+                      (int)bytes_of(text, cut ? longest - 3 : longest), text,
+                      cut ? "..." : "");
+}
+
+void plot_quote(FILE *f, const char *text, size_t longest) {
+    char *part = plot_shortened(text, longest);
+    plot_quote_part(f, part, strlen(part), "");
+    free(part);
 }
 
 void plot_quote_line(FILE *f, const char *before, const char *text,

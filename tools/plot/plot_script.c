@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FONT = 14 };
-
 static void print_terminal(FILE *f, const target *t, const layout *l) {
     double w = l->width, h = l->height;
     switch (t->medium) {
@@ -14,26 +12,26 @@ static void print_terminal(FILE *f, const target *t, const layout *l) {
         fprintf(f,
                 "set terminal svg size %g,%g dynamic enhanced font "
                 "'sans-serif,%d' background '#ffffff'\n",
-                w, h, FONT);
+                w, h, PLOT_FONT);
         break;
     case PLOT_PNG: /* of twice the size */
         fprintf(f,
                 "set terminal pngcairo size %g,%g enhanced font "
                 "'sans-serif,%d' fontscale 1.5 linewidth 2 pointscale 2 "
                 "background '#ffffff'\n",
-                2 * w, 2 * h, FONT); /* fonts: 96 pixels an inch */
+                2 * w, 2 * h, PLOT_FONT); /* fonts: 96 pixels an inch */
         break;
     case PLOT_GIF: /* so many hundredths of a second each frame */
         fprintf(f,
                 "set terminal gif animate delay 6 loop 0 size %g,%g enhanced "
                 "font 'sans,%d' fontscale 0.75 background '#ffffff'\n",
-                w, h, FONT);
+                w, h, PLOT_FONT);
         break;
     case PLOT_PDF:
         fprintf(f,
                 "set terminal pdfcairo size %gin,%gin enhanced font "
                 "'sans-serif,%d' fontscale 0.72 linewidth 1.5\n",
-                w / 72, h / 72, FONT);
+                w / 72, h / 72, PLOT_FONT);
         break;
     case PLOT_TEXT:
         fprintf(f, "set terminal dumb nofeed size %g,%g enhanced %s\n", w, h,
@@ -57,14 +55,14 @@ static void print_output(FILE *f, const char *file) {
     fputs("\"\n", f);
 }
 
-/* Cividis [J. R. Nunez, C. R. Anderton, R. S. Renslow, PLoS ONE 13 (2018)
-   e0199239]: its lightness grows evenly, also for those who see few colours. */
 static void print_map(FILE *f, const field_map *m, const layout *l) {
-    fputs("set palette defined (0 '#00204D', 1 '#31446B', 2 '#666970', 3 "
-          "'#958F78', 4 '#CBBA69', 5 '#FFEA46')\n"
-          "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor "
-          "rgb '#999999' fillstyle pattern 4 noborder\n",
-          f);
+    for (size_t i = 0; i < PLOT_PALETTE; i++)
+        fprintf(f, "%s%zu '#%06X'", i ? ", " : "set palette defined (", i,
+                plot_palette[i]);
+    fputs(
+        ")\nset object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor "
+        "rgb '#999999' fillstyle pattern 4 noborder\n",
+        f);
     fprintf(f, "set cbrange [%.12g:%.12g]\n%s", m->shown.low, m->shown.high,
             m->log ? "set logscale cb\nset format cb '10^{%T}'\n" : "");
     plot_quote_line(f, "set cblabel ", m->label, l->panel_height / l->letter,
@@ -89,40 +87,13 @@ static void print_axis(FILE *f, char letter, const axis *a) {
     fputs(a->count ? ")\n" : "", f);
 }
 
-/* A third of so many letters is the name's at least; the unit, which begins with a
-   factor, has the others.  To be freed. */
-static char *shorter_label(const char *label, size_t letters) {
-    const char *unit = strrchr(label, '(');
-    size_t name = unit ? plot_letters(label) - plot_letters(unit) : 0;
-    size_t least = letters / 3, unit_and_dots = plot_letters(label) - name + 4;
-    size_t kept =
-        letters > unit_and_dots + least ? letters - unit_and_dots : least;
-    size_t bytes = 0;
-    if (!unit || plot_letters(label) <= letters || name <= kept)
-        return text_print("%s", label);
-    while (kept--)
-        bytes += plot_letter_bytes((const unsigned char *)label + bytes);
-    return text_print("%.*s... %s", (int)bytes, label, unit);
-}
-
-/* Smaller where it has no room otherwise. */
 static void print_label(FILE *f, const char *before, const char *label,
                         double room, const char *after) {
-    static const double letter = 0.57, smallest = 0.75;
-    double letters = fmax(label ? (double)plot_letters(label) : 0, 1);
-    double size = fmin(fmax(room / (letter * FONT * letters), smallest), 1);
-    double most = fmax(room / (letter * FONT * size), 8);
-    char *text = shorter_label(label ? label : "", (size_t)most);
-    char font[64];
-    snprintf(font, sizeof font, " font ',%.3g'%s", size * FONT, after);
-    plot_quote_line(f, before, text, most, font);
+    double size;
+    char font[64], *text = plot_fit_label(label, room, &size);
+    snprintf(font, sizeof font, " font ',%.3g'%s", size, after);
+    plot_quote_line(f, before, text, (double)plot_letters(text), font);
     free(text);
-}
-
-static double top_of(size_t number, const layout *l) {
-    double row = (double)(number / l->columns);
-    return l->height - l->title - l->top -
-           row * (l->top + l->panel_height + l->bottom);
 }
 
 /* top  of the panel, of the picture's height */
@@ -169,68 +140,40 @@ static void print_axes(FILE *f, const plot *p, size_t number, const layout *l,
     panel on = p->panel[number];
     if (p->stacked && number + 1 < p->panels)
         on.x = NULL;
-    print_texts(f, &on, &a, top_of(number, l) / l->height, l, text);
+    print_texts(f, &on, &a, 1 - plot_panel_at(number, l).y / l->height, l,
+                text);
 }
 
 static void print_place(FILE *f, size_t number, const layout *l) {
-    double left = l->left + (double)(number % l->columns) *
-                                (l->left + l->panel_width + l->right);
-    double top = top_of(number, l);
+    pair at = plot_panel_at(number, l);
     fprintf(f,
             "set lmargin at screen %.6f\nset rmargin at screen %.6f\n"
             "set tmargin at screen %.6f\nset bmargin at screen %.6f\n",
-            left / l->width, (left + l->panel_width) / l->width,
-            top / l->height, (top - l->panel_height) / l->height);
-}
-
-/* A line in the middle, so many lines from the top. */
-static void print_line(FILE *f, const char *text, size_t bytes, bool cut,
-                       double line, const layout *l, const char *font) {
-    fputs("set label ", f);
-    plot_quote_part(f, text, bytes, cut ? " ..." : "");
-    fprintf(f, " at screen 0.5,%.6f center noenhanced %s\n",
-            1 - line * l->line / l->height, font);
-}
-
-static void print_lines(FILE *f, const char *text, size_t letters, size_t lines,
-                        double first, double apart, const layout *l,
-                        const char *font) {
-    for (size_t i = 0; i < lines; i++) {
-        size_t bytes = plot_line_bytes(text, letters);
-        bool cut = i + 1 == lines && text[bytes];
-        print_line(f, text, bytes, cut, first + apart * (double)i, l, font);
-        text += bytes;
-        text += *text == ' ';
-    }
+            at.x / l->width, (at.x + l->panel_width) / l->width,
+            1 - at.y / l->height, 1 - (at.y + l->panel_height) / l->height);
 }
 
 static void print_title(FILE *f, const plot *p, const layout *l) {
-    bool text = l->letter == 1;
-    double apart = text ? 1 : 1.2;
-    double begin =
-        p->title && *p->title ? 0.9 + apart * (double)l->title_lines : 0;
-    char font[80];
-    snprintf(font, sizeof font, "font ',%.3g'", FONT * l->title_scale);
-    print_lines(f, p->title, plot_title_letters(l), l->title_lines, 1.1, apart,
-                l, font);
-    snprintf(font, sizeof font, "textcolor rgb '#444444' font ',%d'",
-             PLOT_NOTE_FONT);
-    print_lines(f, p->note, plot_note_letters(l), l->note_lines, begin,
-                text ? 1 : 0.95, l, font);
-}
-
-static double legend_top(const layout *l) {
-    return l->narrow ? l->legend_height / l->height
-                     : 1 - (l->title + l->top) / l->height;
+    text_line lines[PLOT_MOST_LINES];
+    size_t count = plot_title_lines(p, l, lines);
+    for (size_t i = 0; i < count; i++) {
+        fputs("set label ", f);
+        plot_quote_part(f, lines[i].text, lines[i].bytes,
+                        lines[i].cut ? " ..." : "");
+        fprintf(f, " at screen 0.5,%.6f center noenhanced %sfont ',%.3g'\n",
+                1 - lines[i].middle / l->height,
+                lines[i].size == PLOT_NOTE_FONT ? "textcolor rgb '#444444' "
+                                                : "",
+                lines[i].size);
+    }
 }
 
 static void print_key(FILE *f, const layout *l, bool text) {
     fprintf(f,
             "set key at screen %.6f,%.6f left top vertical maxcols 1 Left "
             "reverse samplen %d spacing 1.2 noautotitle\n",
-            l->narrow ? l->letter / l->width
-                      : (l->width - l->legend) / l->width,
-            legend_top(l), text ? 3 : 2);
+            plot_legend_at(l).x / l->width, 1 - plot_legend_at(l).y / l->height,
+            text ? 3 : 2);
 }
 
 static void print_frame(FILE *f, const plot *p, const layout *l, bool text) {
@@ -251,7 +194,8 @@ static void print_legend(FILE *f, const plot *p, const layout *l, bool text) {
     fprintf(f,
             "set lmargin at screen %.6f\nset rmargin at screen 1\n"
             "set tmargin at screen %.6f\nset bmargin at screen 0\n",
-            l->narrow ? 0 : (l->width - l->legend) / l->width, legend_top(l));
+            l->narrow ? 0 : (l->width - l->legend) / l->width,
+            1 - plot_legend_at(l).y / l->height);
     fputs("unset logscale\nunset border\nunset tics\nunset label\n"
           "set xlabel ''\nset ylabel ''\nset title ''\n"
           "set xrange [0:1]\nset yrange [0:1]\n",
@@ -260,13 +204,12 @@ static void print_legend(FILE *f, const plot *p, const layout *l, bool text) {
     plot_script_series(f, p, p->panels, true, text);
 }
 
-static void print_picture(FILE *f, const plot *p, const layout *l, bool text,
-                          bool on_page) {
+static void print_picture(FILE *f, const plot *p, const layout *l, bool text) {
     bool apart = l->legend + l->legend_height > 0 && l->legend_apart;
     bool several = p->panels > 1 || apart;
     print_frame(f, p, l, text);
     plot_script_looks(f, p);
-    plot_script_data(f, p, l, on_page);
+    plot_script_data(f, p);
     if (p->map.columns)
         print_map(f, &p->map, l);
     if (several)
@@ -297,7 +240,7 @@ void plot_script(const plot *p, const target *t, FILE *f) {
         print_output(f, t->file);
     bool text = t->medium == PLOT_TEXT;
     for (; p; p = p->next) {
-        print_picture(f, p, &l, text, t->on_page);
+        print_picture(f, p, &l, text);
         if (p->next)
             fputs("unset label\n", f);
     }

@@ -1,192 +1,297 @@
-/* nevh: plots: the SVG that gnuplot wrote, in fewer bytes.
+/* nevh: plots as SVG: panels, axes, texts and the legend.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Discs of one series, each an element of a hundred bytes: points of one path
-   with round ends look the same. */
-typedef struct {
-    double x, y, radius;
-    char colour[32];
-} disc;
+static const double middle_line = 0.325; /* of a letter: from its base */
 
-static bool disc_read(const char *line, disc *d) {
-    int end = 0;
-    return sscanf(line,
-                  " <use xlink:href='#gpPt6' transform='translate(%lf,%lf) "
-                  "scale(%lf)' color='%31[^']'/> %n",
-                  &d->x, &d->y, &d->radius, d->colour, &end) == 4 &&
-           end && line[end] == '\0';
+/* What is no letter, or none of XML, is a question mark. */
+static void put_letters(FILE *f, const char *text, size_t bytes) {
+    for (const char *end = text + bytes; text < end;) {
+        size_t length = plot_letter_bytes((const unsigned char *)text);
+        char letter[8] = "?";
+        if (length)
+            memcpy(letter, text, length);
+        html_text(f, letter);
+        text += length ? length : 1;
+    }
 }
 
-static bool discs_match(const disc *a, const disc *b) {
-    return a->radius == b->radius && strcmp(a->colour, b->colour) == 0;
-}
-
-/* Of one look, one after the other. */
-typedef struct {
-    disc *item;
-    size_t count, room;
-} discs;
-
-static void discs_add(discs *d, const disc *next) {
-    if (d->count == d->room)
-        d->item =
-            tool_enlarge(d->item, d->room = 2 * d->room + 64, sizeof *d->item);
-    d->item[d->count++] = *next;
-}
-
-/* Near ones follow each other: by rows of a pixel. */
-static int by_place(const void *a, const void *b) {
-    const disc *one = a, *other = b;
-    double rows = floor(one->y) - floor(other->y);
-    return rows < 0 || (rows == 0 && one->x < other->x)   ? -1
-           : rows > 0 || (rows == 0 && one->x > other->x) ? 1
-                                                          : 0;
-}
-
-/* In tenths of a pixel, each from the one before. */
-static void discs_put(discs *d, FILE *to) {
-    if (!d->count)
+/* Of "10^{-3}" the power is raised. */
+static void put_number(FILE *f, const char *text) {
+    const char *power = strstr(text, "^{");
+    if (!power) {
+        put_letters(f, text, strlen(text));
         return;
-    qsort(d->item, d->count, sizeof *d->item, by_place);
-    fprintf(to,
-            "\t<path transform='scale(.1)' fill='none' stroke='%s' "
-            "stroke-width='%.1f' stroke-linecap='round' d='",
-            d->item->colour, 20 * d->item->radius);
-    int x = 0, y = 0;
-    for (size_t i = 0; i < d->count; i++) {
-        int right = (int)lround(10 * d->item[i].x) - x;
-        int down = (int)lround(10 * d->item[i].y) - y;
-        fprintf(to, "m%d%s%dh0%s", right, down < 0 ? "" : " ", down,
-                i % 16 == 15 ? "\n" : "");
-        x += right, y += down;
     }
-    fputs("'/>\n", to);
-    d->count = 0;
+    put_letters(f, text, (size_t)(power - text));
+    fprintf(f, "<tspan dy='-.5em' font-size='.8em'>%.*s</tspan>",
+            (int)strcspn(power + 2, "}"), power + 2);
 }
 
-/* A line of the coordinates of a path, which goes on over several. */
-typedef struct {
-    bool open;
-    char last; /* command; 0: none */
-    int x, y;  /* tenths of a pixel */
-} path;
+typedef enum { START, MIDDLE, END } anchor;
 
-/* In pixels, without a zero before the point. */
-static void tenths_put(int number, bool apart, FILE *to) {
-    int size = abs(number);
-    fputs(number < 0 ? "-" : apart ? " " : "", to);
-    if (size >= 10 || size == 0)
-        fprintf(to, "%d", size / 10);
-    if (size % 10)
-        fprintf(to, ".%d", size % 10);
+static void begin_text(FILE *f, double x, double y, anchor a, double size,
+                       const char *colour) {
+    static const char *const anchors[] = {"", " text-anchor='middle'",
+                                          " text-anchor='end'"};
+    fprintf(f, "<text x='%.5g' y='%.5g'%s", x, y, anchors[a]);
+    if (size != PLOT_FONT)
+        fprintf(f, " font-size='%.3g'", size);
+    if (colour)
+        fprintf(f, " fill='%s'", colour);
 }
 
-/* Lines go from the point before, in tenths of a pixel. */
-static void point_put(path *p, char letter, double x, double y, FILE *to) {
-    int right = (int)lround(10 * x), down = (int)lround(10 * y);
-    bool line = letter == 'L', again = line && p->last == 'L';
-    if (!again)
-        fputc(line ? 'l' : 'M', to);
-    tenths_put(line ? right - p->x : right, again, to);
-    tenths_put(line ? down - p->y : down, true, to);
-    *p = (path){true, letter, right, down};
+static void put_text(FILE *f, double x, double y, anchor a, double size,
+                     const char *colour, const char *text) {
+    begin_text(f, x, y, a, size, colour);
+    fputc('>', f);
+    put_letters(f, text, strlen(text));
+    fputs("</text>\n", f);
 }
 
-static void path_put(path *p, const char *line, FILE *to) {
-    char letter;
-    double x, y;
-    int length;
-    while (*line && *line != '\'') {
-        if (sscanf(line, "%c%lf,%lf %n", &letter, &x, &y, &length) == 3 &&
-            (letter == 'M' || letter == 'L')) {
-            point_put(p, letter, x, y, to);
-            line += length;
-        } else {
-            p->last = 0;
-            fputc(*line++, to);
+static void put_label(FILE *f, double x, double y, anchor a, double room,
+                      const char *label) {
+    double size;
+    char *text = plot_fit_label(label, room, &size);
+    if (*text)
+        put_text(f, x, y, a, size, NULL, text);
+    free(text);
+}
+
+/* On its side, from below. */
+static void put_standing(FILE *f, double x, double y, double room,
+                         const char *label) {
+    if (!label || !*label)
+        return;
+    fprintf(f, "<g transform='translate(%.1f %.1f)rotate(-90)'>\n", x, y);
+    put_label(f, 0, 0, MIDDLE, room, label);
+    fputs("</g>\n", f);
+}
+
+static void put_titles(FILE *f, const plot *p, const layout *l) {
+    text_line lines[PLOT_MOST_LINES];
+    size_t count = plot_title_lines(p, l, lines);
+    for (size_t i = 0; i < count; i++) {
+        const text_line *line = &lines[i];
+        begin_text(f, l->width / 2, line->middle + middle_line * line->size,
+                   MIDDLE, line->size,
+                   line->size == PLOT_NOTE_FONT ? "#444444" : NULL);
+        fputc('>', f);
+        put_letters(f, line->text, line->bytes);
+        fputs(line->cut ? " ...</text>\n" : "</text>\n", f);
+    }
+}
+
+/* Along an axis of that length: a share of it. */
+static double share_of(const axis *a, double at) {
+    range r = a->shown;
+    return a->log ? log(at / r.low) / log(r.high / r.low)
+                  : (at - r.low) / (r.high - r.low);
+}
+
+enum { LONG_TICK = 10, SHORT_TICK = 5 };
+
+static double tick_of(const tick *t) {
+    return t->minor ? SHORT_TICK : LONG_TICK;
+}
+
+static void put_grid(FILE *f, const axes *a, pair at, const layout *l) {
+    fputs("<path stroke='#dddddd' stroke-width='.5' d='", f);
+    for (size_t i = 0; i < a->x.count; i++)
+        if (!a->x.tick[i].minor)
+            fprintf(f, "M%.1f %.1fv%g",
+                    at.x + share_of(&a->x, a->x.tick[i].at) * l->panel_width,
+                    at.y, l->panel_height);
+    for (size_t i = 0; i < a->y.count; i++)
+        if (!a->y.tick[i].minor)
+            fprintf(f, "M%.1f %.1fh%g", at.x,
+                    at.y + (1 - share_of(&a->y, a->y.tick[i].at)) *
+                               l->panel_height,
+                    l->panel_width);
+    fputs("'/>\n", f);
+}
+
+static void put_x_axis(FILE *f, const axis *a, pair at, const layout *l) {
+    double bottom = at.y + l->panel_height;
+    fprintf(f, "<path fill='none' stroke='#555555' d='M%.1f %.1fh%g", at.x,
+            bottom, l->panel_width);
+    for (size_t i = 0; i < a->count; i++)
+        fprintf(f, "M%.1f %.1fv%g",
+                at.x + share_of(a, a->tick[i].at) * l->panel_width, bottom,
+                tick_of(&a->tick[i]));
+    fputs("'/>\n", f);
+    for (size_t i = 0; i < a->count; i++) {
+        if (a->tick[i].minor)
+            continue;
+        begin_text(f, at.x + share_of(a, a->tick[i].at) * l->panel_width,
+                   bottom + 36, MIDDLE, PLOT_FONT, NULL);
+        fputc('>', f);
+        put_number(f, a->tick[i].text);
+        fputs("</text>\n", f);
+    }
+}
+
+/* x     of the axis; numbers are on its left, or on its right
+   side  -1, 1 */
+static void put_y_axis(FILE *f, const axis *a, double x, double top,
+                       double height, int side) {
+    static const double away = 20;
+    fprintf(f, "<path fill='none' stroke='#555555' d='M%.1f %.1fv%g", x, top,
+            height);
+    for (size_t i = 0; i < a->count; i++)
+        fprintf(f, "M%.1f %.1fh%g", x,
+                top + (1 - share_of(a, a->tick[i].at)) * height,
+                side * tick_of(&a->tick[i]));
+    fputs("'/>\n", f);
+    for (size_t i = 0; i < a->count; i++) {
+        if (a->tick[i].minor)
+            continue;
+        begin_text(f, x + side * away,
+                   top + (1 - share_of(a, a->tick[i].at)) * height +
+                       middle_line * PLOT_FONT,
+                   side < 0 ? END : START, PLOT_FONT, NULL);
+        fputc('>', f);
+        put_number(f, a->tick[i].text);
+        fputs("</text>\n", f);
+    }
+}
+
+/* The middle of a label beside numbers of that axis. */
+static double beside(const axis *a) {
+    return 9 * (double)plot_axis_letters(a) + 37;
+}
+
+static void put_labels(FILE *f, const panel *on, const axes *a, pair at,
+                       bool x_too, const layout *l) {
+    double width = l->panel_width + 2 * l->right;
+    double middle = at.x + l->panel_width / 2;
+    char *x = x_too ? plot_axis_label(&a->x, on->x, false) : NULL;
+    char *y = plot_axis_label(&a->y, on->y, false);
+    put_label(f, middle, at.y + l->panel_height + 57, MIDDLE, width, x);
+    if (l->narrow)
+        put_label(f, l->letter, at.y - 17, START, l->width - 2 * l->letter, y);
+    else
+        put_standing(f, at.x - beside(&a->y), at.y + l->panel_height / 2,
+                     l->panel_height + l->top + 0.8 * l->bottom, y);
+    put_label(f, middle, at.y - (l->narrow ? 35 : 16.5), MIDDLE, width,
+              on->heading);
+    free(x);
+    free(y);
+}
+
+static void put_guides(FILE *f, const plot *p, size_t number, pair at,
+                       const layout *l) {
+    guide_name *names = tool_allocate(p->count + 1, sizeof *names);
+    size_t count = plot_guide_names(p, number, l, names);
+    for (size_t i = 0; i < count; i++) {
+        char *text = plot_shortened(names[i].text, PLOT_LONGEST_NAME);
+        put_text(f, at.x + names[i].left,
+                 at.y + l->panel_height - names[i].middle +
+                     middle_line * PLOT_NOTE_FONT,
+                 START, PLOT_NOTE_FONT, "#777777", text);
+        free(text);
+    }
+    free(names);
+}
+
+/* Each with its name, which a browser shows where the pointer is. */
+static void put_curves(FILE *f, const plot *p, size_t number,
+                       const plot_screen *on, pair at) {
+    for (size_t i = 0; i < p->count; i++) {
+        const series *s = &p->series[i];
+        if (s->panel != number || !s->count)
+            continue;
+        fputs("<g>", f);
+        if (s->name) {
+            fputs("<title>", f);
+            put_letters(f, s->name, strlen(s->name));
+            fputs("</title>", f);
         }
+        fputc('\n', f);
+        plot_svg_series(f, p, s, on, at);
+        fputs("</g>\n", f);
     }
-    p->open = *line != '\'';
-    fputs(p->open ? "\n" : line, to);
 }
 
-/* gnuplot leaves "]]>" of a title as it is, which no text of XML may have. */
-static void text_put(const char *line, FILE *to) {
-    static const char end[] = "]]>";
-    for (const char *at; (at = strstr(line, end)); line = at + sizeof end - 1)
-        fprintf(to, "%.*s]]&gt;", (int)(at - line), line);
-    fputs(line, to);
+static void put_panel(FILE *f, const plot *p, size_t number, const layout *l,
+                      double detail) {
+    axes a = plot_axes(p, number, l, false);
+    pair at = plot_panel_at(number, l);
+    plot_screen on = plot_screen_of(p, number, l);
+    bool last = number + 1 == p->panels;
+    on.detail = detail;
+    put_grid(f, &a, at, l);
+    if (number == 0 && p->map.columns)
+        plot_svg_map(f, &p->map, &on, at);
+    put_curves(f, p, number, &on, at);
+    put_x_axis(f, &a.x, at, l);
+    put_y_axis(f, &a.y, at.x, at.y, l->panel_height, -1);
+    put_labels(f, &p->panel[number], &a, at, last || !p->stacked, l);
+    put_guides(f, p, number, at, l);
 }
 
-/* Marks, which have names, are too small for that. */
-static void line_put(path *p, const char *line, FILE *to) {
-    static const char begin[] = " d='";
-    const char *data = strstr(line, begin);
-    if (p->open)
-        path_put(p, line, to);
-    else if (data && strstr(line, "<path stroke=") && !strstr(line, " id=")) {
-        data += sizeof begin - 1;
-        fwrite(line, 1, (size_t)(data - line), to);
-        p->last = 0;
-        path_put(p, data, to);
-    } else if (strstr(line, "<text>"))
-        text_put(line, to);
-    else
-        fputs(line, to);
+static void put_scale(FILE *f, const field_map *m, const layout *l) {
+    pair at = plot_panel_at(0, l);
+    double left = at.x + l->panel_width + 2 * l->letter;
+    double right = left + 2 * l->letter, height = l->panel_height;
+    axis a = plot_axis(m->shown, m->log, height / (2 * l->line), false);
+    char *label = plot_axis_label(&a, m->label, false);
+    plot_svg_palette(f, left, at.y, height);
+    put_y_axis(f, &a, right, at.y, height, 1);
+    put_standing(f, right + beside(&a), at.y + height / 2, height, label);
+    free(label);
 }
 
-/* The beginning of a group without what SVG takes anyway. */
-static void group_put(const char *line, FILE *to) {
-    static const char usual[] =
-        " stroke-linecap=\"butt\" stroke-linejoin=\"miter\"";
-    const char *at = strstr(line, usual);
-    if (at)
-        fprintf(to, "%.*s%s", (int)(at - line), line, at + sizeof usual - 1);
-    else
-        fputs(line, to);
-}
-
-void plot_svg_shorten(FILE *from, FILE *to) {
-    char *line = NULL, *group = NULL; /* group: not yet written */
-    size_t room = 0;
-    path open = {false, 0, 0, 0};
-    discs all = {NULL, 0, 0};
-    disc next;
-    rewind(from);
-    while (getline(&line, &room, from) >= 0) {
-        bool is_disc = disc_read(line, &next);
-        bool is_empty = group && strcmp(line, "</g>\n") == 0;
-        if (!is_disc || (all.count && !discs_match(all.item, &next)))
-            discs_put(&all, to);
-        if (group && !is_empty)
-            group_put(group, to);
-        free(group);
-        group = NULL;
-        if (is_disc)
-            discs_add(&all, &next);
-        else if (strncmp(line, "<g fill=", 8) == 0)
-            group = text_print("%s", line);
-        else if (!is_empty)
-            line_put(&open, line, to);
+static void put_legend(FILE *f, const plot *p, const layout *l) {
+    static const double apart = 25.2, half = 12.6, sample = 9.8, name = 49.6;
+    pair at = plot_legend_at(l);
+    double y = at.y + half;
+    for (size_t i = 0; i < p->count; i++) {
+        if (!plot_in_legend(p, i))
+            continue;
+        char *text = plot_shortened(p->series[i].name, PLOT_LONGEST_NAME);
+        plot_svg_sample(f, p, &p->series[i], (pair){at.x + sample, y});
+        put_text(f, at.x + name, y + middle_line * PLOT_FONT, START, PLOT_FONT,
+                 NULL, text);
+        y += apart;
+        free(text);
     }
-    discs_put(&all, to);
-    free(all.item);
-    free(group);
-    free(line);
 }
 
-void plot_svg_copy(FILE *from, FILE *to) {
-    char *line = NULL;
-    size_t room = 0;
-    rewind(from);
-    while (getline(&line, &room, from) >= 0)
-        if (strstr(line, "<text>"))
-            text_put(line, to);
-        else
-            fputs(line, to);
-    free(line);
+static void put_picture(FILE *f, const plot *p, const layout *l,
+                        double detail) {
+    fprintf(f,
+            "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %g %g' "
+            "font-family='sans-serif' font-size='%d' "
+            "stroke-linejoin='round'>\n"
+            "<path fill='#ffffff' d='M0 0h%gv%gH0z'/>\n",
+            l->width, l->height, PLOT_FONT, l->width, l->height);
+    put_titles(f, p, l);
+    for (size_t i = 0; i < p->panels; i++)
+        put_panel(f, p, i, l, detail);
+    if (p->map.columns)
+        put_scale(f, &p->map, l);
+    else if (l->legend + l->legend_height > 0)
+        put_legend(f, p, l);
+    fputs("</svg>\n", f);
+}
+
+void plot_svg(const plot *p, const target *t, FILE *to) {
+    static const double finest = 0.1, coarsest = 4, coarser = 1.5;
+    layout l = plot_lay_out(p, t);
+    size_t size = PLOT_MOST_BYTES + 1;
+    for (double detail = finest; size > PLOT_MOST_BYTES; detail *= coarser) {
+        char *text = NULL;
+        FILE *f = tool_owned(open_memstream(&text, &size));
+        put_picture(f, p, &l, detail);
+        fclose(f);
+        if (size <= PLOT_MOST_BYTES || detail * coarser > coarsest) {
+            fwrite(text, 1, size, to);
+            size = 0;
+        }
+        free(tool_owned(text));
+    }
 }

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Pixels: plot_thin_error follows from them. */
-static const double tolerance = 0.1, cell = 0.2, apart = 0.4;
+/* Over the detail of a screen: plot_thin_error follows from them. */
+static const double cell_of_detail = 2, apart_of_detail = 4;
 
 static double part(double value, range r, bool log) {
     return log ? log10(value / r.low) / log10(r.high / r.low)
@@ -28,11 +28,11 @@ static bool is_inside(const plot_screen *s, pair at) {
    Computer Graphics and Image Processing 8 (1978) 286-293] */
 typedef struct {
     pair from, first;
-    double low, high, farthest;
+    double low, high, farthest, tolerance;
 } sleeve;
 
-static sleeve sleeve_at(pair from) {
-    return (sleeve){from, {0, 0}, -INFINITY, INFINITY, 0};
+static sleeve sleeve_at(pair from, double tolerance) {
+    return (sleeve){from, {0, 0}, -INFINITY, INFINITY, 0, tolerance};
 }
 
 /* Whether a line to that point is near enough to all points before it.  None of
@@ -40,7 +40,7 @@ static sleeve sleeve_at(pair from) {
 static bool sleeve_reaches(sleeve *v, pair to) {
     pair d = {to.x - v->from.x, to.y - v->from.y};
     double distance = hypot(d.x, d.y);
-    if (distance <= tolerance)
+    if (distance <= v->tolerance)
         return v->farthest == 0;
     if (!(distance >= v->farthest && distance < INFINITY))
         return false;
@@ -48,7 +48,7 @@ static bool sleeve_reaches(sleeve *v, pair to) {
         v->first = d;
     double angle = atan2(v->first.x * d.y - v->first.y * d.x,
                          v->first.x * d.x + v->first.y * d.y);
-    double half = asin(tolerance / distance);
+    double half = asin(v->tolerance / distance);
     if (!(angle >= v->low && angle <= v->high))
         return false;
     v->low = fmax(v->low, angle - half);
@@ -57,24 +57,23 @@ static bool sleeve_reaches(sleeve *v, pair to) {
     return true;
 }
 
-/* Of a line without breaks.  Where it crosses the border both points stay:
-   gnuplot draws no line between two points that are outside. */
+/* Of a line without breaks.  Where it crosses the border both points stay. */
 static size_t thin_line(const plot_screen *s, const pair from[], size_t count,
                         pair to[]) {
     size_t kept = 0, last = 0; /* that was kept */
     to[kept++] = from[0];
     pair before = plot_in_pixels(s, from[0]);
-    sleeve v = sleeve_at(before);
+    sleeve v = sleeve_at(before, s->detail);
     for (size_t i = 1; i < count; i++) {
         pair at = plot_in_pixels(s, from[i]);
         bool crosses = is_inside(s, at) != is_inside(s, before);
         if (crosses || !sleeve_reaches(&v, at)) {
             if (last < i - 1)
                 to[kept++] = from[last = i - 1];
-            v = sleeve_at(before);
+            v = sleeve_at(before, s->detail);
             if (crosses || !sleeve_reaches(&v, at)) {
                 to[kept++] = from[last = i];
-                v = sleeve_at(at);
+                v = sleeve_at(at, s->detail);
             }
         }
         before = at;
@@ -87,13 +86,15 @@ static size_t thin_line(const plot_screen *s, const pair from[], size_t count,
 /* Cells of the panel in which something is drawn. */
 typedef struct {
     const plot_screen *screen;
+    double side;
     size_t columns, rows;
     bool *drawn;
 } cells;
 
 static cells cells_new(const plot_screen *s) {
-    cells c = {s, (size_t)(s->width / cell) + 1, (size_t)(s->height / cell) + 1,
-               NULL};
+    double side = cell_of_detail * s->detail;
+    cells c = {s, side, (size_t)(s->width / side) + 1,
+               (size_t)(s->height / side) + 1, NULL};
     c.drawn = tool_allocate(c.columns * c.rows, sizeof *c.drawn);
     return c;
 }
@@ -102,14 +103,14 @@ static cells cells_new(const plot_screen *s) {
 static bool *cell_of(const cells *c, pair at) {
     if (!is_inside(c->screen, at))
         return NULL;
-    return &c->drawn[(size_t)(at.y / cell) * c->columns +
-                     (size_t)(at.x / cell)];
+    return &c->drawn[(size_t)(at.y / c->side) * c->columns +
+                     (size_t)(at.x / c->side)];
 }
 
 /* Whether the line from a to b has a cell of its own; draws it. */
 static bool walk_line(const cells *c, pair a, pair b, bool draws) {
     double length = hypot(b.x - a.x, b.y - a.y);
-    size_t count = (size_t)ceil(length / cell);
+    size_t count = (size_t)ceil(length / c->side);
     bool is_new = false;
     for (size_t i = 0; i <= count; i++) {
         double along = count ? (double)i / (double)count : 0;
@@ -182,6 +183,7 @@ static size_t thin_lines(const plot_screen *s, bool solid, const pair from[],
 /* Dots that are drawn, of which a cell has one at most: its diagonal is `apart`.
    Places are from 1 on; 0: none. */
 typedef struct {
+    double apart;
     size_t columns, rows;
     float (*at)[2];
 } dots;
@@ -195,7 +197,7 @@ static bool dots_near(const dots *d, size_t column, size_t row, pair at) {
         for (size_t i = left; i <= column + REACH && i < d->columns; i++) {
             const float *other = d->at[k * d->columns + i];
             if (other[0] > 0 &&
-                hypot(other[0] - 1 - at.x, other[1] - 1 - at.y) <= apart)
+                hypot(other[0] - 1 - at.x, other[1] - 1 - at.y) <= d->apart)
                 return true;
         }
     return false;
@@ -203,9 +205,9 @@ static bool dots_near(const dots *d, size_t column, size_t row, pair at) {
 
 static size_t thin_dots(const plot_screen *s, const pair from[], size_t count,
                         pair to[]) {
-    double side = apart / sqrt(2);
-    dots d = {(size_t)(s->width / side) + 1, (size_t)(s->height / side) + 1,
-              NULL};
+    double apart = apart_of_detail * s->detail, side = apart / sqrt(2);
+    dots d = {apart, (size_t)(s->width / side) + 1,
+              (size_t)(s->height / side) + 1, NULL};
     d.at = tool_allocate(d.columns * d.rows, sizeof *d.at);
     size_t kept = 0;
     for (size_t i = 0; i < count; i++) {
@@ -223,16 +225,17 @@ static size_t thin_dots(const plot_screen *s, const pair from[], size_t count,
     return kept;
 }
 
-double plot_thin_error(plot_thinning how) {
+double plot_thin_error(plot_thinning how, double detail) {
     if (how == THIN_NONE)
         return 0;
     if (how == THIN_DOTS)
-        return apart;
-    return tolerance + (how == THIN_SOLID ? (sqrt(2) + 0.5) * cell : 0);
+        return apart_of_detail * detail;
+    return detail +
+           (how == THIN_SOLID ? (sqrt(2) + 0.5) * cell_of_detail : 0) * detail;
 }
 
-static size_t thin(const plot_screen *s, plot_thinning how, const pair from[],
-                   size_t count, pair to[]) {
+size_t plot_thin(const plot_screen *s, plot_thinning how, const pair from[],
+                 size_t count, pair to[]) {
     switch (how) {
     case THIN_DOTS:
         return thin_dots(s, from, count, to);
@@ -240,17 +243,34 @@ static size_t thin(const plot_screen *s, plot_thinning how, const pair from[],
     case THIN_SOLID:
         return thin_lines(s, how == THIN_SOLID, from, count, to);
     case THIN_NONE:
+        memcpy(to, from, count * sizeof *to);
         break;
     }
-    return 0;
+    return count;
 }
 
-size_t plot_thin(const plot_screen *s, plot_thinning how, const pair from[],
-                 size_t count, pair to[]) {
-    size_t kept = thin(s, how, from, count, to);
-    if (kept == 0 && how == THIN_NONE)
-        memcpy(to, from, (kept = count) * sizeof *to);
-    if (kept == 0 && count) /* gnuplot takes no series without points */
-        to[kept++] = from[0];
-    return kept;
+/* Whether a part of the line from a to b is on that side of a limit, as far as
+   from and to, which shrink: shares of the line. */
+static bool clip(double along, double room, double *from, double *to) {
+    if (along > 0)
+        *to = fmin(*to, room / along);
+    else if (along < 0)
+        *from = fmax(*from, room / along);
+    else if (room < 0)
+        return false;
+    return *from <= *to;
+}
+
+bool plot_clip(pair *a, pair *b, pair low, pair high) {
+    double from = 0, to = 1, x = b->x - a->x, y = b->y - a->y;
+    if (!isfinite(x) || !isfinite(y) || !clip(x, high.x - a->x, &from, &to) ||
+        !clip(-x, a->x - low.x, &from, &to) ||
+        !clip(y, high.y - a->y, &from, &to) ||
+        !clip(-y, a->y - low.y, &from, &to))
+        return false;
+    if (to < 1)
+        *b = (pair){a->x + to * x, a->y + to * y};
+    if (from > 0)
+        *a = (pair){a->x + from * x, a->y + from * y};
+    return true;
 }

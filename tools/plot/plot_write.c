@@ -60,7 +60,7 @@ static void measure_terminal(target *t) {
 }
 
 static int find_target(const options *o, target *t) {
-    *t = (target){.on_page = o->as_html};
+    *t = (target){0};
     if (find_medium(o, &t->medium))
         return TOOL_USAGE;
     if (t->medium == PLOT_TEXT)
@@ -93,18 +93,14 @@ void plot_say_written(const options *o, const plan *p, const char *integrator,
     free(scheme);
 }
 
-static int check_target(const options *o) {
+int plot_check(const options *o) {
     target t;
     if (find_target(o, &t))
         return TOOL_USAGE;
     if (in_terminal(o) && !o->file && o->format != FORMAT_TABLE)
         return tool_refuse("--plot - would draw among the rows; give them a "
                            "file with -o");
-    return TOOL_OK;
-}
-
-int plot_check(const options *o) {
-    if (check_target(o) || (o->plot.file && gnuplot_check()) ||
+    if ((o->plot.file && t.medium != PLOT_SVG && gnuplot_check()) ||
         (o->plot.file && !in_terminal(o) && output_check(o->plot.file)) ||
         (o->plot.script && output_check(o->plot.script)))
         return TOOL_USAGE;
@@ -167,26 +163,16 @@ static int draw_in_terminal(const plot *p, const target *t) {
     return status;
 }
 
-static int draw_svg(const plot *p, const target *t, FILE *to) {
-    FILE *drawing = tmpfile();
-    if (!drawing)
-        return tool_refuse("no temporary file: %s", strerror(errno));
-    int status = draw_to(p, t, drawing);
-    if (!status && t->on_page)
-        plot_svg_shorten(drawing, to);
-    else if (!status)
-        plot_svg_copy(drawing, to);
-    fclose(drawing);
-    return status;
-}
-
 static int draw_to_file(const plot *p, const char *file, const target *t) {
     output out;
     if (output_open(&out, file))
         return TOOL_USAGE;
-    return output_close(&out, t->medium == PLOT_SVG
-                                  ? draw_svg(p, t, out.stream)
-                                  : draw_to(p, t, out.stream));
+    int status = TOOL_OK;
+    if (t->medium == PLOT_SVG)
+        plot_svg(p, t, out.stream);
+    else
+        status = draw_to(p, t, out.stream);
+    return output_close(&out, status);
 }
 
 static int draw(const plot *p, const options *o, const target *t) {

@@ -1,7 +1,6 @@
 /* nevh report: what the other commands say of a scene, as one page of HTML.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
-#include "plot/plot.h"
 #include "film_private.h"
 #include "report_private.h"
 #include <errno.h>
@@ -13,7 +12,6 @@
 typedef struct {
     const options *given;
     char *folder, *rows, *picture, *narrow, *messages; /* files of one part */
-    bool draws;                                        /* gnuplot is at hand */
     size_t films;                                      /* on the page */
     size_t parts;                                      /* so far */
     int terminal; /* stderr, where messages of a part go to a file; else -1 */
@@ -172,7 +170,7 @@ static report_part make_part(report_work *w, const kind_of_part *kind,
     options o = *w->given;
     o.operands = (list){words, 2};
     o.file = kind->rows ? w->rows : NULL;
-    o.plot.file = kind->draws && w->draws ? w->picture : NULL;
+    o.plot.file = kind->draws ? w->picture : NULL;
     o.plot.narrow = w->narrow;
     o.plot.kind = kind->kind;
     o.chaos.starts = kind->of == &chaos_command ? STARTS : 0;
@@ -182,11 +180,8 @@ static report_part make_part(report_work *w, const kind_of_part *kind,
     unlink(w->rows);
     unlink(w->picture);
     unlink(w->narrow);
-    report_part part = {.title = kind->title,
-                        .about = kind->about,
-                        .undrawn = kind->draws && !w->draws};
-    if (kind->rows || w->draws)
-        part.status = run_heard(w, kind->of, &o);
+    report_part part = {.title = kind->title, .about = kind->about};
+    part.status = run_heard(w, kind->of, &o);
     part.html = text_read(w->rows);
     part.picture = text_read(w->picture);
     part.narrow = text_read(w->narrow);
@@ -413,21 +408,13 @@ static int report(const options *o) {
     FILE *f = tool_owned(open_memstream(&text, &size));
     int status = TOOL_OK;
     begin_page(o, f);
-    w.draws = plot_is_possible();
     w.films =
         (o->operands.count - 1) * (o->variants.count ? o->variants.count : 1);
-    if (!w.draws)
-        html_undrawn(f);
     for (size_t i = 1; !status && i < o->operands.count; i++)
         status = add_scene(&w, o, o->operands.item[i], f);
     html_foot(f);
     fclose(f);
     free_work(&w);
-    if (!status && !w.draws)
-        fputs(
-            "nevh: pictures by gnuplot are left out: it was not found (Debian has "
-            "it as gnuplot-nox)\n",
-            stderr);
     if (!status)
         status = write_page(o, tool_owned(text));
     free(text);

@@ -68,49 +68,21 @@ static void put_heading(FILE *f, const char *title, const char *name) {
     fputs("</h2>\n", f);
 }
 
-void html_undrawn(FILE *f) {
-    fputs("<p>Pictures by gnuplot are left out: it was not found.</p>\n", f);
-}
-
-/* The names of parts, and what refers to them, with a prefix. */
-static void put_prefixed(FILE *f, const char *text, size_t number) {
-    static const char *const before[] = {" id='", " id=\"", "href='#",
-                                         "href=\"#", "url(#"};
-    enum { COUNT = sizeof before / sizeof *before };
-    while (*text) {
-        size_t i = 0;
-        while (i < COUNT && strncmp(text, before[i], strlen(before[i])) != 0)
-            i++;
-        if (i == COUNT)
-            fputc(*text++, f);
-        else {
-            fprintf(f, "%sp%zu_", before[i], number);
-            text += strlen(before[i]);
-        }
-    }
-}
-
-/* The drawing without the header of a file.  Several stand in one page, so that
-   names of its parts get a prefix: the number. */
 static void put_drawing(FILE *f, const report_part *p, const char *drawing,
                         const char *look, size_t number) {
-    static const char after[] = "</desc>";
-    const char *tag = strstr(drawing, "<svg");
-    const char *body = strstr(drawing, after);
-    const char *box = strstr(drawing, "viewBox=");
-    if (!tag || !body || !box || box > body)
+    static const char begin[] = "<svg";
+    const char *body = strchr(drawing, '>');
+    if (!body || strncmp(drawing, begin, sizeof begin - 1) != 0)
         return;
+    drawing += sizeof begin - 1;
     fprintf(f,
-            "<svg class=\"%s\" role=\"img\" aria-labelledby=\"t%zu\" %.*s "
-            "xmlns=\"http://www.w3.org/2000/svg\" "
-            "xmlns:xlink=\"http://www.w3.org/1999/xlink\">\n<title "
-            "id=\"t%zu\">",
-            look, number, (int)strcspn(box, "\n"), box, number);
+            "<svg class=\"%s\" role=\"img\" "
+            "aria-labelledby=\"t%zu\"%.*s>\n<title id=\"t%zu\">",
+            look, number, (int)(body - drawing), drawing, number);
     html_text(f, p->title);
     fputs(". ", f);
     html_text(f, p->about);
-    fputs("</title>", f);
-    put_prefixed(f, body + sizeof after - 1, number);
+    fprintf(f, "</title>%s", body + 1);
 }
 
 /* Twice: one of both is shown, by the room that there is. */
@@ -142,8 +114,6 @@ void html_part(FILE *f, const report_part *p, size_t number, list *told) {
     fputs("</p>\n", f);
     if (p->picture)
         put_picture(f, p, number);
-    if (p->undrawn)
-        fputs("<p>The picture is left out.</p>\n", f);
     if (p->html)
         put_notes_once(f, p->html, told);
     if (p->messages && *p->messages) {

@@ -14,7 +14,6 @@ typedef struct {
     char *command, *html, *picture, *messages;
     char *narrow; /* the picture for a telephone */
     int status;
-    bool undrawn; /* its picture is left out */
 } report_part;
 
 /* variants.c: a scene with settings of its own. */
@@ -41,8 +40,6 @@ char *text_read(const char *name);
 void html_head(FILE *, const char *title, bool wide);
 /* Of as many as `count`, where they are several. */
 void html_side_by_side(FILE *, size_t count, bool begins);
-/* That pictures are left out, and why. */
-void html_undrawn(FILE *);
 /* number  of its picture in the page
    told    notes that parts before it have, and then its own */
 void html_part(FILE *, const report_part *, size_t number, list *told);

@@ -1,0 +1,117 @@
+/* nevh: plots: how series look, in one table that both writers read.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot_private.h"
+#include <math.h>
+#include <string.h>
+
+/* M. Okabe, K. Ito, Color Universal Design (2008), but for yellow, which is
+   lost on white; each with a dash and a marker of its own, for grey print. */
+static const char *const colours[] = {"#0072B2", "#D55E00", "#009E73",
+                                      "#CC79A7", "#000000", "#E69F00",
+                                      "#56B4E9"};
+static const plot_dash_lengths dashes[] = {
+    {0}, {12, 5}, {3, 3}, {14, 4, 3, 4}, {20, 6}};
+static const int markers[] = {
+    PLOT_DISC,        PLOT_SQUARE + 1, PLOT_TRIANGLE + 1,
+    PLOT_DIAMOND + 1, PLOT_SQUARE,     PLOT_CIRCLE,
+    PLOT_TRIANGLE,    PLOT_DIAMOND,    PLOT_CROSS};
+enum {
+    COLOURS = sizeof colours / sizeof *colours,
+    DASHES = sizeof dashes / sizeof *dashes,
+    MARKERS = sizeof markers / sizeof *markers,
+    MARKS = 9 /* of a PLOT_MARKED line */
+};
+
+/* What a form has; 0: nothing, or what is usual. */
+static const struct {
+    const char *colour; /* NULL: that of the look */
+    double width;
+    enum { SOLID, OF_LOOK, AS_ASKED } dash;
+    int mark; /* OWN: that of the look */
+    double size, opacity;
+    const char *edge;
+} forms[] = {
+#define OWN -1
+    [PLOT_LINES] = {.width = 1.5, .dash = OF_LOOK},
+    [PLOT_TRAIL] = {.width = 1.5, .dash = AS_ASKED},
+    [PLOT_BEHIND] = {.colour = "#bbbbbb", .width = 5},
+    [PLOT_MARKED] = {.width = 1.5, .dash = OF_LOOK, .mark = OWN},
+    [PLOT_BOTH] = {.width = 1.5, .dash = OF_LOOK, .mark = OWN},
+    [PLOT_POINTS] = {.mark = OWN},
+    [PLOT_DOTS] = {.mark = PLOT_DISC},
+    [PLOT_RODS] = {.colour = "#777777", .width = 4},
+    [PLOT_BOBS] = {.mark = PLOT_DISC, .size = 2.2, .edge = "#000000"},
+    [PLOT_START] = {.mark = PLOT_CIRCLE, .size = 1.2},
+    [PLOT_LEVEL] = {.colour = "#bbbbbb", .width = 0.7},
+    [PLOT_SEPARATRIX] = {.colour = "#000000", .width = 1.3},
+    [PLOT_CENTRE] = {.colour = "#000000", .mark = PLOT_DISC, .size = 0.8},
+    [PLOT_SADDLE] = {.colour = "#000000", .mark = PLOT_CROSS, .size = 1.1},
+    [PLOT_FILLED] = {.width = 0.8, .dash = OF_LOOK, .opacity = 0.45},
+    [PLOT_HOLE] = {.colour = "#ffffff",
+                   .width = 0.8,
+                   .opacity = 1,
+                   .edge = "#555555"},
+    [PLOT_GUIDE] = {.colour = "#999999", .width = 1},
+};
+
+/* Neighbours are far apart on the circle of hues, and differ in lightness. */
+void plot_colour(const plot *p, size_t look, char text[16]) {
+    static const double golden = 0.6180339887498949;
+    if (!p->colourful) {
+        snprintf(text, 16, "%s", colours[look % COLOURS]);
+        return;
+    }
+    double light = 0.45 + 0.15 * (double)(look % 3);
+    unsigned part[3];
+    for (int i = 0; i < 3; i++) {
+        double hue = fmod((double)look * golden + i / 3.0, 1);
+        double wave = 0.5 + 0.5 * cos(2 * 3.141592653589793 * hue);
+        part[i] = (unsigned)(255 * fmin(light * (0.25 + 1.25 * wave), 1));
+    }
+    snprintf(text, 16, "#%02X%02X%02X", part[0] & 255, part[1] & 255,
+             part[2] & 255);
+}
+
+const double *plot_look_dash(const plot *p, size_t look) {
+    return dashes[p->colourful ? 0 : look % DASHES];
+}
+
+int plot_look_mark(size_t look) {
+    return markers[look % MARKERS];
+}
+
+static double dot_size(size_t count) {
+    static const double largest = 0.8, smallest = 0.15;
+    return fmax(fmin(largest * pow(50 / (double)(count + 1), 0.3), largest),
+                smallest);
+}
+
+plot_look plot_look_of(const plot *p, const series *s) {
+    plot_look l = {.own = !forms[s->form].colour,
+                   .width = forms[s->form].width,
+                   .dash = dashes[0],
+                   .mark = forms[s->form].mark,
+                   .opacity = forms[s->form].opacity,
+                   .edge = forms[s->form].edge,
+                   .every = 1};
+    double size = forms[s->form].size;
+    if (l.own)
+        plot_colour(p, s->look, l.colour);
+    else
+        strcpy(l.colour, forms[s->form].colour);
+    if (forms[s->form].dash == OF_LOOK)
+        l.dash = plot_look_dash(p, s->look);
+    else if (forms[s->form].dash == AS_ASKED)
+        l.dash = dashes[s->dash % DASHES];
+    if (l.mark == OWN)
+        l.mark = plot_look_mark(s->look);
+    l.size = PLOT_USUAL_SIZE;
+    if (s->form == PLOT_DOTS)
+        l.size = dot_size(s->count) * s->size;
+    else if (size > 0)
+        l.size = size * s->size;
+    if (s->form == PLOT_MARKED)
+        l.every = s->count / MARKS + 1 + s->look;
+    l.many = s->form == PLOT_DOTS || s->form == PLOT_POINTS;
+    return l;
+}
