@@ -184,7 +184,8 @@ const char *nevh_loop_message(const nevh_loop *l) {
 
 /* The whole. */
 
-static int put(nevh_loop *l, nevh__queue *to, double from, double to_s) {
+static int put(nevh_loop *l, nevh__queue *to, double from, double to_s,
+               size_t parts) {
     if (to->count == to->room) {
         size_t room = 2 * to->room + 16;
         nevh__panel *more = nevh__grow(to->item, room, sizeof *more);
@@ -193,7 +194,7 @@ static int put(nevh_loop *l, nevh__queue *to, double from, double to_s) {
         to->item = more;
         to->room = room;
     }
-    to->item[to->count++] = (nevh__panel){from, to_s, NULL};
+    to->item[to->count++] = (nevh__panel){from, to_s, parts, NULL};
     return NEVH_OK;
 }
 
@@ -265,17 +266,26 @@ static int take(nevh_loop *l, nevh__panel at, bool last) {
     if (!status && (last || l->taken_times >= l->reach))
         return accept(l, at);
     free(at.states);
-    return status ? status : put(l, &l->rough[l->taken_times], at.from, at.to);
+    return status ? status
+                  : put(l, &l->rough[l->taken_times], at.from, at.to,
+                        nevh__loop_parts(l));
 }
 
 /* Cuts the panel that is rough first, while there may be more. */
 static int cut(nevh_loop *l, nevh__queue *from, size_t waiting) {
     nevh__panel at = from->item[from->front++];
-    double middle = at.from + (at.to - at.from) / 2;
-    if (l->panels + waiting >= most_panels(l) || at.to - at.from < shortest)
+    size_t most = most_panels(l), panels = l->panels + waiting;
+    size_t parts = panels + at.parts <= most ? at.parts : 2;
+    double length = (at.to - at.from) / (double)parts;
+    int status = NEVH_OK;
+    if (panels >= most || at.to - at.from < shortest)
         return take(l, at, true);
-    int status = take(l, (nevh__panel){at.from, middle, NULL}, false);
-    return status ? status : take(l, (nevh__panel){middle, at.to, NULL}, false);
+    for (size_t i = 0; !status && i < parts; i++) {
+        double begins = at.from + (double)i * length;
+        double ends = i + 1 < parts ? begins + length : at.to;
+        status = take(l, (nevh__panel){begins, ends, 0, NULL}, false);
+    }
+    return status;
 }
 
 static int cut_all(nevh_loop *l) {
@@ -302,7 +312,7 @@ static int begin(nevh_loop *l) {
         for (int i = 0; !status && i < PIECES; i++) {
             double from = l->corners[c], length = l->corners[c + 1] - from;
             status = put(l, &all, from + length * i / PIECES,
-                         from + length * (i + 1) / PIECES);
+                         from + length * (i + 1) / PIECES, 0);
         }
     if (!status)
         status = find_units(l, &all);

@@ -119,7 +119,8 @@ static int carry_panels(inside *x) {
             double from = l->corners[c], length = l->corners[c + 1] - from;
             double end = (double)(i + 1) / (double)pieces;
             double begin = (double)i / (double)pieces;
-            nevh__panel at = {from + length * begin, from + length * end, NULL};
+            nevh__panel at = {from + length * begin, from + length * end, 0,
+                              NULL};
             status = carry_panel(x, &at);
         }
     return status;

@@ -175,3 +175,15 @@ bool nevh__loop_keep_smooth(nevh_loop *l, nevh__panel *at, size_t time) {
     l->taken_times += is_smooth(l, time);
     return is_smooth(l, time);
 }
+
+/* Halves have errors that are 2^-14 of those of the whole at best: where that is too
+   much they need not be tried. */
+size_t nevh__loop_parts(const nevh_loop *l) {
+    enum { MOST = 16 };
+    static const double halved = 0x1p-14;
+    size_t time = l->taken_times, parts = 2;
+    double error = l->taken_error[time] * halved;
+    for (; parts < MOST && error > tolerance * l->unit[time]; error *= halved)
+        parts *= 2;
+    return parts;
+}

@@ -10,6 +10,7 @@ enum { NEVH__NODES = 16 };
 
 typedef struct {
     double from, to; /* s */
+    size_t parts;    /* that it is cut into */
     double
         *states; /* NEVH__NODES x n of q, then of p, for each time; NULL where
                         shapes are not kept */
@@ -61,6 +62,8 @@ void nevh__loop_expand(const nevh_loop *, const double value[], double from,
 bool nevh__loop_measure(nevh_loop *, nevh__panel *, size_t time);
 bool nevh__loop_keep(nevh_loop *, nevh__panel *, size_t time);
 bool nevh__loop_keep_smooth(nevh_loop *, nevh__panel *, size_t time);
+/* Into how many parts the panel at hand is to be cut, which is not smooth. */
+size_t nevh__loop_parts(const nevh_loop *);
 
 /* loop_inside.c.  Finds areas that the curve no longer tells, of one degree of
    freedom: the mean over what it enclosed at first of the determinants of all

@@ -131,6 +131,26 @@ TEST(verlet_keeps_the_area_for_1000_steps) {
     nevh_scene_free(s);
 }
 
+static int counted_circle(void *data, size_t count, const double s[],
+                          double q[], double p[]) {
+    *(size_t *)data += count;
+    return circle(NULL, count, s, q, p);
+}
+
+/* Panels that are too rough for halves are not cut into halves. */
+TEST(few_orbits_are_carried_for_nothing) {
+    size_t orbits = 0;
+    nevh_scene *s = pendulum();
+    nevh_loop *l = carried(
+        s, nevh_verlet,
+        (nevh_loop_options){.curve = counted_circle, .data = &orbits}, 4000);
+    size_t points = nevh_loop_result(l, 1).points;
+    ck_assert_double_eq_tol(ratio(l), 1, 1e-9);
+    ck_assert_uint_le(2 * orbits, 3 * points);
+    nevh_loop_free(l);
+    nevh_scene_free(s);
+}
+
 /* The sum over both planes, on Henon and Heiles' potential. */
 TEST(symplectic_schemes_keep_the_sum_of_areas) {
     static double rest[] = {0.1, 0.2};

@@ -61,9 +61,12 @@ static int take_times(flow_job *j, const options *o) {
     return TOOL_OK;
 }
 
-/* A loop of the shape; eye: 0, or which one of the cat. */
+/* A loop of the shape, at the first so many times.
+   eye  0, or which one of the cat, which is drawn, but not measured */
 static nevh_loop *new_loop(flow_job *j, const flow_row *r, int eye,
-                           bool shapes) {
+                           size_t times, bool shapes) {
+    enum { EYE_POINTS = 512 };
+    static const double panels = 300; /* about as many as are carried */
     const plan *p = &j->plan;
     double corner[FLOW_CORNERS];
     size_t *steps = tool_allocate(j->times, sizeof *steps);
@@ -75,26 +78,40 @@ static nevh_loop *new_loop(flow_job *j, const flow_row *r, int eye,
         o.tolerance = p->tolerance[0];
     for (size_t i = 0; i < j->times; i++)
         steps[i] = (size_t)llround((j->time[i] - j->time[0]) / r->dt);
+    o.steps_foreseen = panels * (double)steps[times - 1];
     j->shape.eye = eye;
     nevh_loop_options is = {.curve = shape_curve,
                             .data = &j->shape,
                             .corners = corner,
                             .n_corners = shape_corners(&j->shape, corner),
                             .steps = steps,
-                            .times = j->times,
+                            .times = times,
                             .t0 = j->time[0],
                             .h = r->dt,
-                            .most_points = p->n > 1 ? 2048 : 0,
+                            .most_points = eye        ? EYE_POINTS
+                                           : p->n > 1 ? 2048
+                                                      : 0,
                             .shapes = shapes};
     nevh_loop *l = tool_owned(nevh_loop_new(p->system, scheme, &o, &is));
     free(steps);
     return l;
 }
 
+/* As many as have a shape that is filled. */
+static size_t resolved_times(const flow_job *j, const flow_row *r) {
+    size_t times = 0;
+    for (size_t i = 0; i < j->times; i++) {
+        nevh_loop_area at = nevh_loop_result(r->loop, i);
+        if (flow_resolved(at) && !at.inside)
+            times = i + 1;
+    }
+    return times;
+}
+
 /* returns  TOOL_OK, TOOL_FAILED where a step failed, or TOOL_USAGE */
 static int run_row(flow_job *j, flow_row *r, const options *o) {
     bool shapes = plot_wanted(o);
-    r->loop = new_loop(j, r, 0, shapes);
+    r->loop = new_loop(j, r, 0, j->times, shapes);
     if (nevh_loop_status(r->loop)) {
         r->status = text_print("refused: %s", nevh_loop_message(r->loop));
         return TOOL_OK;
@@ -104,8 +121,10 @@ static int run_row(flow_job *j, flow_row *r, const options *o) {
         return TOOL_USAGE;
     if (status == NEVH_EINVAL)
         return tool_refuse("--shape: %s", nevh_loop_message(r->loop));
-    for (int i = 0; shapes && j->shape.kind == FLOW_CAT && i < FLOW_EYES; i++) {
-        r->eye[i] = new_loop(j, r, i + 1, true);
+    size_t times = resolved_times(j, r);
+    bool eyes = shapes && times && j->shape.kind == FLOW_CAT;
+    for (int i = 0; eyes && i < FLOW_EYES; i++) {
+        r->eye[i] = new_loop(j, r, i + 1, times, true);
         nevh_loop_carry(r->eye[i]);
         j->shape.eye = 0;
     }
