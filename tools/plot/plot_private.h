@@ -169,7 +169,6 @@ typedef struct {
     double detail;        /* what is smaller is not shown: pixels */
 } plot_screen;
 typedef enum {
-    THIN_NONE,
     THIN_LINE,
     THIN_SOLID, /* also: no part that lies over another of the series */
     THIN_DOTS   /* none that lies over another */

@@ -96,23 +96,11 @@ static void print_label(FILE *f, const char *before, const char *label,
     free(text);
 }
 
-/* top  of the panel, of the picture's height */
-static void print_y_label(FILE *f, const char *label, double top,
-                          const layout *l) {
-    double beside = l->panel_height + l->top + 0.8 * l->bottom;
-    char place[64];
-    snprintf(place, sizeof place, " at screen %.6f,%.6f left",
-             l->letter / l->width, top + 1.2 * l->line / l->height);
-    if (l->narrow)
-        print_label(f, "set label ", label, l->width - 2 * l->letter, place);
-    else
-        print_label(f, "set ylabel ", label, beside, "");
-}
-
 /* Text has no letters that lie on their side. */
-static void print_texts(FILE *f, const panel *on, const axes *a, double top,
+static void print_texts(FILE *f, const panel *on, const axes *a,
                         const layout *l, bool text) {
     double width = l->panel_width + 2 * l->right;
+    double height = l->panel_height + l->top + 0.8 * l->bottom;
     char *x = plot_axis_label(&a->x, on->x, text);
     char *y = plot_axis_label(&a->y, on->y, text);
     if (text) {
@@ -124,9 +112,8 @@ static void print_texts(FILE *f, const panel *on, const axes *a, double top,
         free(title);
     } else {
         print_label(f, "set xlabel ", x, width, " offset 0,0.5");
-        print_y_label(f, y, top, l);
-        print_label(f, "set title ", on->heading, width,
-                    l->narrow ? " offset 0,0.4" : " offset 0,-0.5");
+        print_label(f, "set ylabel ", y, height, "");
+        print_label(f, "set title ", on->heading, width, " offset 0,-0.5");
     }
     free(x);
     free(y);
@@ -140,8 +127,7 @@ static void print_axes(FILE *f, const plot *p, size_t number, const layout *l,
     panel on = p->panel[number];
     if (p->stacked && number + 1 < p->panels)
         on.x = NULL;
-    print_texts(f, &on, &a, 1 - plot_panel_at(number, l).y / l->height, l,
-                text);
+    print_texts(f, &on, &a, l, text);
 }
 
 static void print_place(FILE *f, size_t number, const layout *l) {
@@ -194,7 +180,7 @@ static void print_legend(FILE *f, const plot *p, const layout *l, bool text) {
     fprintf(f,
             "set lmargin at screen %.6f\nset rmargin at screen 1\n"
             "set tmargin at screen %.6f\nset bmargin at screen 0\n",
-            l->narrow ? 0 : (l->width - l->legend) / l->width,
+            plot_legend_at(l).x / l->width,
             1 - plot_legend_at(l).y / l->height);
     fputs("unset logscale\nunset border\nunset tics\nunset label\n"
           "set xlabel ''\nset ylabel ''\nset title ''\n"

@@ -6,6 +6,7 @@
 #include <string.h>
 
 static const double middle_line = 0.325; /* of a letter: from its base */
+static const double base = 4.55;         /* the same, of usual letters */
 
 /* What is no letter, or none of XML, is a question mark. */
 static void put_letters(FILE *f, const char *text, size_t bytes) {
@@ -42,12 +43,12 @@ static void begin_text(FILE *f, double x, double y, anchor a, double size,
         fprintf(f, " font-size='%.3g'", size);
     if (colour)
         fprintf(f, " fill='%s'", colour);
+    fputc('>', f);
 }
 
 static void put_text(FILE *f, double x, double y, anchor a, double size,
                      const char *colour, const char *text) {
     begin_text(f, x, y, a, size, colour);
-    fputc('>', f);
     put_letters(f, text, strlen(text));
     fputs("</text>\n", f);
 }
@@ -79,83 +80,59 @@ static void put_titles(FILE *f, const plot *p, const layout *l) {
         begin_text(f, l->width / 2, line->middle + middle_line * line->size,
                    MIDDLE, line->size,
                    line->size == PLOT_NOTE_FONT ? "#444444" : NULL);
-        fputc('>', f);
         put_letters(f, line->text, line->bytes);
         fputs(line->cut ? " ...</text>\n" : "</text>\n", f);
     }
 }
 
-/* Along an axis of that length: a share of it. */
 static double share_of(const axis *a, double at) {
     range r = a->shown;
     return a->log ? log(at / r.low) / log(r.high / r.low)
                   : (at - r.low) / (r.high - r.low);
 }
 
-enum { LONG_TICK = 10, SHORT_TICK = 5 };
+/* Where an axis begins, where it goes to, and what stands beside its ticks. */
+typedef struct {
+    pair from, along; /* pixels */
+    pair out;         /* direction of the ticks */
+    pair number;      /* from the axis on */
+    anchor anchor;
+} place;
 
-static double tick_of(const tick *t) {
-    return t->minor ? SHORT_TICK : LONG_TICK;
+static pair tick_at(const axis *a, const place *on, size_t i) {
+    double share = share_of(a, a->tick[i].at);
+    return (pair){on->from.x + share * on->along.x,
+                  on->from.y + share * on->along.y};
 }
 
-static void put_grid(FILE *f, const axes *a, pair at, const layout *l) {
-    fputs("<path stroke='#dddddd' stroke-width='.5' d='", f);
-    for (size_t i = 0; i < a->x.count; i++)
-        if (!a->x.tick[i].minor)
-            fprintf(f, "M%.1f %.1fv%g",
-                    at.x + share_of(&a->x, a->x.tick[i].at) * l->panel_width,
-                    at.y, l->panel_height);
-    for (size_t i = 0; i < a->y.count; i++)
-        if (!a->y.tick[i].minor)
-            fprintf(f, "M%.1f %.1fh%g", at.x,
-                    at.y + (1 - share_of(&a->y, a->y.tick[i].at)) *
-                               l->panel_height,
-                    l->panel_width);
-    fputs("'/>\n", f);
-}
-
-static void put_x_axis(FILE *f, const axis *a, pair at, const layout *l) {
-    double bottom = at.y + l->panel_height;
-    fprintf(f, "<path fill='none' stroke='#555555' d='M%.1f %.1fh%g", at.x,
-            bottom, l->panel_width);
-    for (size_t i = 0; i < a->count; i++)
-        fprintf(f, "M%.1f %.1fv%g",
-                at.x + share_of(a, a->tick[i].at) * l->panel_width, bottom,
-                tick_of(&a->tick[i]));
+static void put_axis(FILE *f, const axis *a, const place *on) {
+    enum { TICK = 10 };
+    fprintf(f, "<path fill='none' stroke='#555555' d='M%.1f %.1fl%g %g",
+            on->from.x, on->from.y, on->along.x, on->along.y);
+    for (size_t i = 0; i < a->count; i++) {
+        pair at = tick_at(a, on, i);
+        int length = a->tick[i].minor ? TICK / 2 : TICK;
+        fprintf(f, "M%.1f %.1fl%g %g", at.x, at.y, length * on->out.x,
+                length * on->out.y);
+    }
     fputs("'/>\n", f);
     for (size_t i = 0; i < a->count; i++) {
+        pair at = tick_at(a, on, i);
         if (a->tick[i].minor)
             continue;
-        begin_text(f, at.x + share_of(a, a->tick[i].at) * l->panel_width,
-                   bottom + 36, MIDDLE, PLOT_FONT, NULL);
-        fputc('>', f);
+        begin_text(f, at.x + on->number.x, at.y + on->number.y, on->anchor,
+                   PLOT_FONT, NULL);
         put_number(f, a->tick[i].text);
         fputs("</text>\n", f);
     }
 }
 
-/* x     of the axis; numbers are on its left, or on its right
-   side  -1, 1 */
-static void put_y_axis(FILE *f, const axis *a, double x, double top,
-                       double height, int side) {
-    static const double away = 20;
-    fprintf(f, "<path fill='none' stroke='#555555' d='M%.1f %.1fv%g", x, top,
-            height);
-    for (size_t i = 0; i < a->count; i++)
-        fprintf(f, "M%.1f %.1fh%g", x,
-                top + (1 - share_of(a, a->tick[i].at)) * height,
-                side * tick_of(&a->tick[i]));
-    fputs("'/>\n", f);
+static void put_grid(FILE *f, const axis *a, const place *on, double right,
+                     double down) {
     for (size_t i = 0; i < a->count; i++) {
-        if (a->tick[i].minor)
-            continue;
-        begin_text(f, x + side * away,
-                   top + (1 - share_of(a, a->tick[i].at)) * height +
-                       middle_line * PLOT_FONT,
-                   side < 0 ? END : START, PLOT_FONT, NULL);
-        fputc('>', f);
-        put_number(f, a->tick[i].text);
-        fputs("</text>\n", f);
+        pair at = tick_at(a, on, i);
+        if (!a->tick[i].minor)
+            fprintf(f, "M%.1f %.1fl%g %g", at.x, at.y, right, down);
     }
 }
 
@@ -221,14 +198,21 @@ static void put_panel(FILE *f, const plot *p, size_t number, const layout *l,
     axes a = plot_axes(p, number, l, false);
     pair at = plot_panel_at(number, l);
     plot_screen on = plot_screen_of(p, number, l);
+    double width = l->panel_width, height = l->panel_height;
+    pair corner = {at.x, at.y + height};
+    place x = {corner, {width, 0}, {0, 1}, {0, 36}, MIDDLE};
+    place y = {corner, {0, -height}, {-1, 0}, {-20, base}, END};
     bool last = number + 1 == p->panels;
     on.detail = detail;
-    put_grid(f, &a, at, l);
+    fputs("<path stroke='#dddddd' stroke-width='.5' d='", f);
+    put_grid(f, &a.x, &x, 0, -height);
+    put_grid(f, &a.y, &y, width, 0);
+    fputs("'/>\n", f);
     if (number == 0 && p->map.columns)
         plot_svg_map(f, &p->map, &on, at);
     put_curves(f, p, number, &on, at);
-    put_x_axis(f, &a.x, at, l);
-    put_y_axis(f, &a.y, at.x, at.y, l->panel_height, -1);
+    put_axis(f, &a.x, &x);
+    put_axis(f, &a.y, &y);
     put_labels(f, &p->panel[number], &a, at, last || !p->stacked, l);
     put_guides(f, p, number, at, l);
 }
@@ -240,7 +224,10 @@ static void put_scale(FILE *f, const field_map *m, const layout *l) {
     axis a = plot_axis(m->shown, m->log, height / (2 * l->line), false);
     char *label = plot_axis_label(&a, m->label, false);
     plot_svg_palette(f, left, at.y, height);
-    put_y_axis(f, &a, right, at.y, height, 1);
+    put_axis(
+        f, &a,
+        &(place){
+            {right, at.y + height}, {0, -height}, {1, 0}, {20, base}, START});
     put_standing(f, right + beside(&a), at.y + height / 2, height, label);
     free(label);
 }
@@ -254,8 +241,7 @@ static void put_legend(FILE *f, const plot *p, const layout *l) {
             continue;
         char *text = plot_shortened(p->series[i].name, PLOT_LONGEST_NAME);
         plot_svg_sample(f, p, &p->series[i], (pair){at.x + sample, y});
-        put_text(f, at.x + name, y + middle_line * PLOT_FONT, START, PLOT_FONT,
-                 NULL, text);
+        put_text(f, at.x + name, y + base, START, PLOT_FONT, NULL, text);
         y += apart;
         free(text);
     }

@@ -7,12 +7,12 @@
 
 static const double radius = 5.25; /* of a mark of size 1: pixels */
 
-/* The data of a path: tenths of a pixel, each point from the one before. */
+/* The data of a path, which begins with M0 0: tenths of a pixel, each point from the
+   one before. */
 typedef struct {
     FILE *to;
     int x, y, first_x, first_y;
     size_t points;
-    bool moved;
 } path;
 
 /* In pixels, without a zero before the point. */
@@ -25,7 +25,8 @@ static void put_tenths(int number, bool apart, FILE *to) {
         fprintf(to, ".%d", size % 10);
 }
 
-static void put_point(path *p, bool apart, int x, int y) {
+static void put_point(path *p, bool apart, pair at) {
+    int x = (int)lround(10 * at.x), y = (int)lround(10 * at.y);
     if (++p->points % 16 == 0)
         fputc('\n', p->to);
     put_tenths(x - p->x, apart, p->to);
@@ -34,23 +35,21 @@ static void put_point(path *p, bool apart, int x, int y) {
     p->y = y;
 }
 
-static void path_move(path *p, pair at) {
-    fputc(p->moved ? 'm' : 'M', p->to);
-    put_point(p, false, p->first_x = (int)lround(10 * at.x),
-              p->first_y = (int)lround(10 * at.y));
-    p->moved = true;
+static bool is_at(const path *p, pair at) {
+    return lround(10 * at.x) == p->x && lround(10 * at.y) == p->y;
 }
 
-/* After a move, and after a line, no letter is needed; not to where it is. */
+static void path_move(path *p, pair at) {
+    fputc('m', p->to);
+    put_point(p, false, at);
+    p->first_x = p->x;
+    p->first_y = p->y;
+}
+
+/* After a move, and after a line, no letter is needed. */
 static void path_line(path *p, pair at) {
-    int x = (int)lround(10 * at.x), y = (int)lround(10 * at.y);
-    if (x == p->x && y == p->y)
-        return;
-    /* The first move of a path is absolute, and so would be its lines. */
-    bool absolute = p->points == 1;
-    if (absolute)
-        fputc('l', p->to);
-    put_point(p, !absolute, x, y);
+    if (!is_at(p, at))
+        put_point(p, true, at);
 }
 
 static void path_close(path *p) {
@@ -75,7 +74,7 @@ static void begin_line(FILE *f, const plot_look *l) {
     for (int i = 0; l->dash[i] > 0; i++)
         fprintf(f, "%s%.3g", i ? " " : " stroke-dasharray='",
                 l->dash[i] * l->width / 2);
-    fprintf(f, "%s d='", l->dash[0] > 0 ? "'" : "");
+    fprintf(f, "%s d='M0 0", l->dash[0] > 0 ? "'" : "");
 }
 
 static void put_line(FILE *f, const plot_look *l, const plot_screen *s, pair at,
@@ -87,7 +86,7 @@ static void put_line(FILE *f, const plot_look *l, const plot_screen *s, pair at,
         pair a = placed(s, at, point[k - 1]), b = placed(s, at, point[k]);
         if (!plot_clip(&a, &b, at, end))
             continue;
-        if (!p.moved || lround(10 * a.x) != p.x || lround(10 * a.y) != p.y)
+        if (!is_at(&p, a))
             path_move(&p, a);
         path_line(&p, b);
     }
@@ -131,7 +130,7 @@ static void put_polygon(FILE *f, const plot_look *l, const plot_screen *s,
         return;
     fprintf(f,
             "<path fill='%s' fill-opacity='%g' stroke='%s' stroke-width='%g' "
-            "d='",
+            "d='M0 0",
             l->colour, l->opacity, l->edge ? l->edge : l->colour, l->width);
     path_move(&p, point[0]);
     for (size_t k = 1; k < count; k++)
@@ -169,7 +168,7 @@ static void put_discs(FILE *f, const char *colour, double size,
     path p = {.to = f};
     fprintf(f,
             "<path fill='none' stroke='%s' stroke-width='%.2f' "
-            "stroke-linecap='round' d='",
+            "stroke-linecap='round' d='M0 0",
             colour, 2 * radius * size);
     for (size_t k = 0; k < count; k++) {
         path_move(&p, point[k]);
@@ -225,17 +224,12 @@ static void put_marks(FILE *f, const char *colour, int mark, double size,
         return;
     }
     if (mark % 2)
-        fprintf(f, "<path fill='%s' d='", colour);
+        fprintf(f, "<path fill='%s' d='M0 0", colour);
     else
-        fprintf(f, "<path fill='none' stroke='%s' stroke-width='%g' d='",
+        fprintf(f, "<path fill='none' stroke='%s' stroke-width='%g' d='M0 0",
                 colour, size > 1 ? 1.5 * width : width);
-    for (size_t k = 0; k < count; k++) {
-        p.points =
-            0; /* after each move lines are relative, but for the first */
-        p.moved = false;
-        p.x = p.y = 0;
+    for (size_t k = 0; k < count; k++)
         put_mark(&p, mark, size, point[k]);
-    }
     fputs("'/>\n", f);
 }
 

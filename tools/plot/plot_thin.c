@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* Over the detail of a screen: plot_thin_error follows from them. */
-static const double cell_of_detail = 2, apart_of_detail = 4;
+static const double cell_of_detail = 2, dot_of_detail = 3;
 
 static double part(double value, range r, bool log) {
     return log ? log10(value / r.low) / log10(r.high / r.low)
@@ -91,8 +91,8 @@ typedef struct {
     bool *drawn;
 } cells;
 
-static cells cells_new(const plot_screen *s) {
-    double side = cell_of_detail * s->detail;
+static cells cells_new(const plot_screen *s, double details) {
+    double side = details * s->detail;
     cells c = {s, side, (size_t)(s->width / side) + 1,
                (size_t)(s->height / side) + 1, NULL};
     c.drawn = tool_allocate(c.columns * c.rows, sizeof *c.drawn);
@@ -160,7 +160,7 @@ static size_t run_length(const pair from[], size_t count) {
 
 static size_t thin_lines(const plot_screen *s, bool solid, const pair from[],
                          size_t count, pair to[]) {
-    cells c = cells_new(s);
+    cells c = cells_new(s, cell_of_detail);
     pair *line = tool_allocate(count, sizeof *line);
     size_t kept = 0, length;
     for (size_t i = 0; i < count; i += length + 1) {
@@ -180,73 +180,33 @@ static size_t thin_lines(const plot_screen *s, bool solid, const pair from[],
     return kept;
 }
 
-/* Dots that are drawn, of which a cell has one at most: its diagonal is `apart`.
-   Places are from 1 on; 0: none. */
-typedef struct {
-    double apart;
-    size_t columns, rows;
-    float (*at)[2];
-} dots;
-
-/* Whether a dot near by is drawn. */
-static bool dots_near(const dots *d, size_t column, size_t row, pair at) {
-    enum { REACH = 2 }; /* cells */
-    size_t left = column < REACH ? 0 : column - REACH;
-    size_t below = row < REACH ? 0 : row - REACH;
-    for (size_t k = below; k <= row + REACH && k < d->rows; k++)
-        for (size_t i = left; i <= column + REACH && i < d->columns; i++) {
-            const float *other = d->at[k * d->columns + i];
-            if (other[0] > 0 &&
-                hypot(other[0] - 1 - at.x, other[1] - 1 - at.y) <= d->apart)
-                return true;
-        }
-    return false;
-}
-
+/* A cell has one at most. */
 static size_t thin_dots(const plot_screen *s, const pair from[], size_t count,
                         pair to[]) {
-    double apart = apart_of_detail * s->detail, side = apart / sqrt(2);
-    dots d = {apart, (size_t)(s->width / side) + 1,
-              (size_t)(s->height / side) + 1, NULL};
-    d.at = tool_allocate(d.columns * d.rows, sizeof *d.at);
+    cells c = cells_new(s, dot_of_detail);
     size_t kept = 0;
     for (size_t i = 0; i < count; i++) {
-        pair at = plot_in_pixels(s, from[i]);
-        if (!is_inside(s, at))
-            continue;
-        size_t column = (size_t)(at.x / side), row = (size_t)(at.y / side);
-        if (dots_near(&d, column, row, at))
-            continue;
-        d.at[row * d.columns + column][0] = (float)(1 + at.x);
-        d.at[row * d.columns + column][1] = (float)(1 + at.y);
-        to[kept++] = from[i];
+        bool *drawn = cell_of(&c, plot_in_pixels(s, from[i]));
+        if (drawn && !*drawn) {
+            *drawn = true;
+            to[kept++] = from[i];
+        }
     }
-    free(d.at);
+    free(c.drawn);
     return kept;
 }
 
 double plot_thin_error(plot_thinning how, double detail) {
-    if (how == THIN_NONE)
-        return 0;
-    if (how == THIN_DOTS)
-        return apart_of_detail * detail;
-    return detail +
-           (how == THIN_SOLID ? (sqrt(2) + 0.5) * cell_of_detail : 0) * detail;
+    double details = how == THIN_DOTS    ? sqrt(2) * dot_of_detail
+                     : how == THIN_SOLID ? 1 + (sqrt(2) + 0.5) * cell_of_detail
+                                         : 1;
+    return details * detail;
 }
 
 size_t plot_thin(const plot_screen *s, plot_thinning how, const pair from[],
                  size_t count, pair to[]) {
-    switch (how) {
-    case THIN_DOTS:
-        return thin_dots(s, from, count, to);
-    case THIN_LINE:
-    case THIN_SOLID:
-        return thin_lines(s, how == THIN_SOLID, from, count, to);
-    case THIN_NONE:
-        memcpy(to, from, count * sizeof *to);
-        break;
-    }
-    return count;
+    return how == THIN_DOTS ? thin_dots(s, from, count, to)
+                            : thin_lines(s, how == THIN_SOLID, from, count, to);
 }
 
 /* Whether a part of the line from a to b is on that side of a limit, as far as
