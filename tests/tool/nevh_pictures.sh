@@ -46,6 +46,8 @@ for scene in pendulum henon-heiles kepler; do
     draws 0 compare $scene --integrators verlet,rk4 --t-end 5 --dt 0.1,0.05,0.02 \
         --plot-kind order --plot
     draws 2 cost $scene --integrators verlet,rk4 --t-end 5 --dt 0.1,0.05 --plot
+    draws 0 cost $scene --integrators verlet,rk4 --t-end 5 --dt 0.1,0.05 \
+        --plot-kind order --plot
     draws 1 gradients $scene --t-end 5 --gradient central2,central4 --plot
     draws 0 effects $scene --impact --t-end 5 --plot
     draws 0 flow $scene --integrators verlet,rk4 --t-end 5 --plot

@@ -395,26 +395,26 @@ exits 2 run pendulum --plot - --format csv
 says 'with -o'
 
 if test -n "$gnuplot"; then # other media; files are there when they are whole
-exits 0 run pendulum --t-end 5 --plot -
-has 'p_phi'
-exits 0 run pendulum -o $work/rows.csv --t-end 5 --plot -
-has 'p_phi'
+    exits 0 run pendulum --t-end 5 --plot -
+    has 'p_phi'
+    exits 0 run pendulum -o $work/rows.csv --t-end 5 --plot -
+    has 'p_phi'
 
-for medium in png pdf; do
-    draws compare oscillator --t-end 9 --dt 0.1 --plot $work/x.$medium
-    head -c 4 $work/x.$medium | tr -d '\211' |
-        grep -aqi "^%\{0,1\}$medium" || fails "draws no $medium"
-done
-test "$(echo $work/x.p*)" = "$work/x.pdf $work/x.png" ||
-    fails "leaves other files"
-draws compare oscillator --t-end 9 --dt 0.1 --quiet --plot -
-has '^ +1e-16 '
-has '\*verlet *$'
-lacks '^.{81}.*[*#|]'
-lacks "$(printf '\f')"
-COLUMNS=120 draws compare oscillator --t-end 9 --dt 0.1 --quiet --plot -
-has '^.{105,120}$'
-lacks '^.{121}.*[*#|]'
+    for medium in png pdf; do
+        draws compare oscillator --t-end 9 --dt 0.1 --plot $work/x.$medium
+        head -c 4 $work/x.$medium | tr -d '\211' |
+            grep -aqi "^%\{0,1\}$medium" || fails "draws no $medium"
+    done
+    test "$(echo $work/x.p*)" = "$work/x.pdf $work/x.png" ||
+        fails "leaves other files"
+    draws compare oscillator --t-end 9 --dt 0.1 --quiet --plot -
+    has '^ +1e-16 '
+    has '\*verlet *$'
+    lacks '^.{81}.*[*#|]'
+    lacks "$(printf '\f')"
+    COLUMNS=120 draws compare oscillator --t-end 9 --dt 0.1 --quiet --plot -
+    has '^.{105,120}$'
+    lacks '^.{121}.*[*#|]'
 fi
 
 # Texts are no more than texts.

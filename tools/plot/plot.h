@@ -55,6 +55,9 @@ void plot_same_ranges(plot *);
    they read in grey; hatched where they are NAN.  All are copied. */
 void plot_map(plot *, size_t columns, const double x[], size_t rows,
               const double y[], const double z[], const char *label);
+/* Of looks, in turn. */
+enum { PLOT_COLOURS = 7 };
+extern const char *const plot_colours[PLOT_COLOURS];
 /* Looks differ in colour alone, of which there are as many as looks. */
 void plot_many_colours(plot *);
 /* So many panels side by side, small ones where they are many. */

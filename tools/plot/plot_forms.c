@@ -6,9 +6,9 @@
 
 /* M. Okabe, K. Ito, Color Universal Design (2008), but for yellow, which is
    lost on white; each with a dash and a marker of its own, for grey print. */
-static const char *const colours[] = {"#0072B2", "#D55E00", "#009E73",
-                                      "#CC79A7", "#000000", "#E69F00",
-                                      "#56B4E9"};
+const char *const plot_colours[PLOT_COLOURS] = {"#0072B2", "#D55E00", "#009E73",
+                                                "#CC79A7", "#000000", "#E69F00",
+                                                "#56B4E9"};
 static const plot_dash_lengths dashes[] = {
     {0}, {12, 5}, {3, 3}, {14, 4, 3, 4}, {20, 6}};
 static const int markers[] = {
@@ -16,7 +16,6 @@ static const int markers[] = {
     PLOT_DIAMOND + 1, PLOT_SQUARE,     PLOT_CIRCLE,
     PLOT_TRIANGLE,    PLOT_DIAMOND,    PLOT_CROSS};
 enum {
-    COLOURS = sizeof colours / sizeof *colours,
     DASHES = sizeof dashes / sizeof *dashes,
     MARKERS = sizeof markers / sizeof *markers,
     MARKS = 9 /* of a PLOT_MARKED line */
@@ -58,7 +57,7 @@ static const struct {
 void plot_colour(const plot *p, size_t look, char text[16]) {
     static const double golden = 0.6180339887498949;
     if (!p->colourful) {
-        snprintf(text, 16, "%s", colours[look % COLOURS]);
+        snprintf(text, 16, "%s", plot_colours[look % PLOT_COLOURS]);
         return;
     }
     double light = 0.45 + 0.15 * (double)(look % 3);

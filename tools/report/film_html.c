@@ -1,6 +1,7 @@
 /* nevh report: a moving picture as SVG, with a script that moves it.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "film_private.h"
+#include "plot/plot.h"
 #include "report_private.h"
 #include <math.h>
 #include <stdlib.h>
@@ -17,11 +18,6 @@ enum {
     FAR = 9999,
     TRAIL = 24 /* steps */
 };
-static const char *const colours[] = {"#0072B2", "#D55E00", "#009E73",
-                                      "#CC79A7", "#000000", "#E69F00",
-                                      "#56B4E9"};
-enum { COLOURS = sizeof colours / sizeof *colours };
-
 static const char script[] =
     "(function(){var given=document.currentScript.previousElementSibling,\n"
     "f=given.previousElementSibling,\n"
@@ -109,7 +105,7 @@ static void put_places_of(const film *f, const reel *r, const view *v,
 /* The whole way faintly, the last steps more. */
 static void put_trail(const film *f, const reel *r, const view *v, size_t bob,
                       FILE *to) {
-    const char *colour = colours[bob % COLOURS];
+    const char *colour = plot_colours[bob % PLOT_COLOURS];
     size_t last = r->frames - 1;
     fprintf(to,
             "<path fill=\"none\" stroke=\"%s\" stroke-opacity=\".25\" "
@@ -137,7 +133,7 @@ static void put_orbit(const film *f, const reel *r, const view *v, FILE *to) {
                 down(v, at[3]));
     for (size_t i = 0; i < f->bobs; i++, at += 2)
         fprintf(to, "<circle r=\"%d\" fill=\"%s\" cx=\"%d\" cy=\"%d\"/>\n",
-                i < 4 ? 26 - 4 * (int)i : 12, colours[i % COLOURS],
+                i < 4 ? 26 - 4 * (int)i : 12, plot_colours[i % PLOT_COLOURS],
                 across(v, at[0]), down(v, at[1]));
     fputs("</g>\n", to);
 }
@@ -150,7 +146,7 @@ static void put_panel(const film *f, size_t i, const view *v, FILE *to) {
             "class=\"error\">%.2g %%</tspan></text>\n"
             "<svg x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" viewBox=\"0 0 "
             "%d %d\">\n<rect width=\"%d\" height=\"%d\" fill=\"#f4f4f4\"/>\n",
-            left, colours[i], r->integrator, 100 * r->error[r->frames - 1],
+            left, plot_colours[i], r->integrator, 100 * r->error[r->frames - 1],
             left, HEAD, PANEL, v->height, PANEL, v->height, PANEL, v->height);
     put_orbit(f, r, v, to);
     fputs("</svg>\n", to);
@@ -176,7 +172,7 @@ static void put_strip(const film *f, int top, FILE *to) {
         fprintf(to,
                 "<polyline fill=\"none\" stroke=\"%s\" stroke-width=\"5\" "
                 "points=\"",
-                colours[i]);
+                plot_colours[i]);
         for (size_t k = 0; k < f->reel[i].frames; k++)
             fprintf(to, "%.0f,%.0f ", (double)(WIDTH * k) / (double)f->most,
                     (high - f->reel[i].error[k]) * scale);
