@@ -149,15 +149,6 @@ TEST(turns_over_what_is_drawn_are_left_out) {
     ck_assert(kept_of_turns(100, THIN_DOTS) < MOST / 2);
 }
 
-TEST(lines_through_the_panel_keep_both_sides_of_its_border) {
-    plot_screen s = {{0, 1}, {0, 1}, false, false, 100, 100, 0.1};
-    pair all[5], at[10];
-    for (size_t k = 0; k < 5; k++)
-        all[k] = (pair){-0.75 + 0.5 * (double)k, 0.5};
-    ck_assert_uint_eq(plot_thin(&s, THIN_LINE, all, 5, at), 5);
-    ck_assert(at[2].x == 0.25);
-}
-
 TEST(coarser_screens_keep_fewer_points_within_their_detail) {
     plot_screen s = screen_of(1);
     pair *all = calloc(3 * MOST, sizeof *all), *at = all + MOST;

@@ -18,10 +18,6 @@ pair plot_in_pixels(const plot_screen *s, pair p) {
                   s->height * part(p.y, s->y, s->log_y)};
 }
 
-static bool is_inside(const plot_screen *s, pair at) {
-    return at.x >= 0 && at.x <= s->width && at.y >= 0 && at.y <= s->height;
-}
-
 /* Directions from a point through the circles of the tolerance round those after
    it, relative to the first that is farther away than that. [C. M. Williams, An
    efficient algorithm for the piecewise linear approximation of planar curves,
@@ -57,7 +53,7 @@ static bool sleeve_reaches(sleeve *v, pair to) {
     return true;
 }
 
-/* Of a line without breaks.  Where it crosses the border both points stay. */
+/* Of a line without breaks. */
 static size_t thin_line(const plot_screen *s, const pair from[], size_t count,
                         pair to[]) {
     size_t kept = 0, last = 0; /* that was kept */
@@ -66,12 +62,11 @@ static size_t thin_line(const plot_screen *s, const pair from[], size_t count,
     sleeve v = sleeve_at(before, s->detail);
     for (size_t i = 1; i < count; i++) {
         pair at = plot_in_pixels(s, from[i]);
-        bool crosses = is_inside(s, at) != is_inside(s, before);
-        if (crosses || !sleeve_reaches(&v, at)) {
+        if (!sleeve_reaches(&v, at)) {
             if (last < i - 1)
                 to[kept++] = from[last = i - 1];
             v = sleeve_at(before, s->detail);
-            if (crosses || !sleeve_reaches(&v, at)) {
+            if (!sleeve_reaches(&v, at)) {
                 to[kept++] = from[last = i];
                 v = sleeve_at(at, s->detail);
             }
@@ -101,7 +96,8 @@ static cells cells_new(const plot_screen *s, double details) {
 
 /* NULL: outside, where nothing is seen. */
 static bool *cell_of(const cells *c, pair at) {
-    if (!is_inside(c->screen, at))
+    if (!(at.x >= 0 && at.x <= c->screen->width && at.y >= 0 &&
+          at.y <= c->screen->height))
         return NULL;
     return &c->drawn[(size_t)(at.y / c->side) * c->columns +
                      (size_t)(at.x / c->side)];
@@ -123,12 +119,10 @@ static bool walk_line(const cells *c, pair a, pair b, bool draws) {
     return is_new;
 }
 
-/* Lines that are much longer than a panel are always drawn. */
 static bool draw_line(const cells *c, pair a, pair b) {
-    static const double longest = 1e4;
-    if (!(hypot(b.x - a.x, b.y - a.y) < longest))
-        return true;
-    return walk_line(c, a, b, false) && walk_line(c, a, b, true);
+    const plot_screen *s = c->screen;
+    return plot_clip(&a, &b, (pair){0, 0}, (pair){s->width, s->height}) &&
+           walk_line(c, a, b, false) && walk_line(c, a, b, true);
 }
 
 /* Parts of a line where nothing is drawn yet. */
