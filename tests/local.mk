@@ -216,6 +216,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_flow.sh \
 	tests/tool/nevh_frequencies.sh \
 	tests/tool/nevh_fit.sh \
+	tests/tool/nevh_fit_exact.sh \
 	tests/tool/nevh_data.sh \
 	tests/tool/nevh_report.sh \
 	tests/tool/nevh_report_browser.sh \

@@ -262,16 +262,29 @@ static void add_next(const job *j, const options *o, list *words) {
     free(line);
 }
 
+/* Where the errors are from. */
+static char *tell_errors(const job *j) {
+    if (sigma_known(j))
+        return text_print("%s", "");
+    if (fit_is_rounding(&j->fit, j->fit.chi_square))
+        return text_print(
+            " (the residuals are rounding: errors are by residuals "
+            "of %g of the spread of the data)",
+            FIT_ROUNDING);
+    return text_print("%s", " (sigma is unknown: errors are by the residuals "
+                            "themselves)");
+}
+
 static void add_words(const job *j, const options *o, list *words) {
     const fitting *f = &j->fit;
+    char *errors = tell_errors(j);
     list_print(
         words,
         "%zu residuals, %zu degrees of freedom: chi-square %.4g, reduced "
         "%.4g%s",
         f->residuals, f->residuals - f->count, f->chi_square, reduced(j),
-        sigma_known(j) ? ""
-                       : " (sigma is unknown: errors are by the "
-                         "residuals themselves)");
+        errors);
+    free(errors);
     for (size_t k = 0; k < j->data.columns; k++) {
         const char *name = j->data.names.item[k];
         const char *unit = nevh_scene_label(j->plan.scene, name);

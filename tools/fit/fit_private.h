@@ -15,6 +15,8 @@ typedef struct {
     double moved;        /* by the last change of the scheme */
 } varied;
 
+#define FIT_ROUNDING 1e-9 /* of the spread of the data */
+
 /* How orbits are computed. */
 typedef struct {
     const char *integrator;
@@ -25,7 +27,9 @@ typedef struct {
 typedef enum {
     FIT_UNCHECKED, /* no finer orbit; `unchecked` says why */
     FIT_SMALL,
-    FIT_WIDENED /* the intervals are longer by `moved` */
+    FIT_WIDENED, /* the intervals are longer by `moved` */
+    FIT_GIVEN,   /* the given scheme made the data */
+    FIT_EITHER   /* it may have; longer by `moved`, too */
 } fit_evidence;
 
 typedef struct {
@@ -67,6 +71,11 @@ bool fit_orbit(fitting *, const double x[], double residual[]);
    returns  false where there is none */
 bool fit_scheme_finer(const fitting *, size_t level, bool stepwise,
                       fit_scheme *);
+/* Residuals of this length and below are rounding, from which errors are not to be
+   had: they are those of this length. */
+double fit_rounding(const fitting *);
+bool fit_is_rounding(const fitting *, double chi_square);
+bool fit_is_given(const fitting *); /* whether the scheme is */
 void fit_scheme_words(const fitting *, list *words);
 /* Whether neighbouring residuals of a column are alike, which noise is not. */
 void fit_residual_words(const fitting *, const double residual[], list *words);

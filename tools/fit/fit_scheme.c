@@ -34,9 +34,17 @@ bool fit_scheme_finer(const fitting *f, size_t level, bool stepwise,
     return level < LEVELS;
 }
 
-static bool is_given(const fitting *f) {
+bool fit_is_given(const fitting *f) {
     return strcmp(f->now.integrator, f->given.integrator) == 0 &&
            f->now.dt == f->given.dt && f->now.tolerance == f->given.tolerance;
+}
+
+double fit_rounding(const fitting *f) {
+    return FIT_ROUNDING * f->spread;
+}
+
+bool fit_is_rounding(const fitting *f, double chi_square) {
+    return sqrt(chi_square) <= fit_rounding(f);
 }
 
 void fit_scheme_words(const fitting *f, list *words) {
@@ -50,7 +58,14 @@ void fit_scheme_words(const fitting *f, list *words) {
                    "The intervals do not count it.",
                    scheme, f->given.dt,
                    f->unchecked ? f->unchecked : "there is no finer scheme");
-    else if (is_given(f))
+    else if (f->evidence == FIT_GIVEN)
+        list_print(
+            words,
+            "The residuals are rounding, as those of a more exact orbit "
+            "are not: %s with dt = %.4g made the data, and the intervals "
+            "do not count its error, which is %.2g of %s.",
+            scheme, f->given.dt, fabs(f->item[f->worst].moved), worst);
+    else if (fit_is_given(f))
         list_print(words,
                    "The error of %s with dt = %.4g changes %s by %.2g of its "
                    "error, other numbers by less.",
@@ -65,6 +80,12 @@ void fit_scheme_words(const fitting *f, list *words) {
         list_print(words,
                    "Its own error is not small beside the noise: the intervals "
                    "are longer by what the last refinement changed.");
+    if (f->evidence == FIT_EITHER)
+        list_print(
+            words,
+            "The residuals of either are rounding: these data do not tell "
+            "their orbits apart, and the intervals hold the numbers of "
+            "both.");
     free(tolerance);
 }
 
@@ -83,11 +104,10 @@ static double neighbours(const fitting *f, const double residual[], size_t k) {
 void fit_residual_words(const fitting *f, const double residual[],
                         list *words) {
     enum { FEWEST = 20 };
-    static const double rounding = 1e-9, chance = 4; /* deviations */
-    double size = sqrt(f->chi_square);
+    static const double chance = 4; /* deviations */
     for (size_t k = 0; k < f->data->columns; k++) {
         double alike = neighbours(f, residual, k);
-        if (f->data->points >= FEWEST && size > rounding * f->spread &&
+        if (f->data->points >= FEWEST && !fit_is_rounding(f, f->chi_square) &&
             alike > chance / sqrt((double)f->data->points))
             list_print(words,
                        "Neighbouring residuals of %s are alike (correlation "

@@ -136,6 +136,36 @@ static bool determined(fitting *f, const gsl_matrix *jacobian) {
     return good;
 }
 
+/* The least squares solution of J x = d, or of its part that x does not explain,
+   in d. */
+static void explain(const gsl_matrix *jacobian, gsl_vector *d, gsl_matrix *c,
+                    gsl_vector *x) {
+    gsl_vector *slope = new_vector(x->size);
+    gsl_multifit_nlinear_covar(jacobian, 0, c);
+    gsl_blas_dgemv(CblasTrans, 1, jacobian, d, 0, slope);
+    gsl_blas_dgemv(CblasNoTrans, 1, c, slope, 0, x);
+    gsl_blas_dgemv(CblasNoTrans, -1, jacobian, x, 1, d);
+    gsl_vector_free(slope);
+}
+
+/* Whether the step of Gauss and Newton lowers the squares by rounding alone: GSL's
+   driver fails where the first values are the minimum. */
+static bool at_minimum(const fitting *f,
+                       const gsl_multifit_nlinear_workspace *w) {
+    static const double part = 1e-5;
+    gsl_matrix *c = new_matrix(f->count, f->count);
+    gsl_vector *x = new_vector(f->count), *d = new_vector(f->residuals);
+    gsl_vector_memcpy(d, gsl_multifit_nlinear_residual(w));
+    double before = gsl_blas_dnrm2(d);
+    bool exact = fit_is_rounding(f, before * before);
+    explain(gsl_multifit_nlinear_jac(w), d, c, x);
+    double gain = before - gsl_blas_dnrm2(d);
+    gsl_matrix_free(c);
+    gsl_vector_free(x);
+    gsl_vector_free(d);
+    return exact || gain <= part * part * before;
+}
+
 /* One fit to the first `used` points.
    x        in and out
    returns  0, and w holds the result; a status of GSL */
@@ -164,7 +194,8 @@ static int fit_part(fitting *f, size_t used, gsl_vector *x, double *chi_square,
     f->iterations = gsl_multifit_nlinear_niter(*w);
     gsl_vector *r = gsl_multifit_nlinear_residual(*w);
     gsl_blas_ddot(r, r, chi_square);
-    if (status == GSL_ENOPROG) /* rounding is all that is left */
+    if (status == GSL_ENOPROG || /* rounding is all that is left */
+        (status == GSL_EMAXITER && at_minimum(f, *w)))
         status = GSL_SUCCESS;
     if (status != GSL_EFAILED) { /* an orbit that failed was a trial's */
         free(f->why);
@@ -200,11 +231,19 @@ static void approach(fitting *f, gsl_vector *x) {
     gsl_vector_free(before);
 }
 
+/* Of one residual. */
+static double variance(const fitting *f, double chi_square) {
+    double least = fit_rounding(f), degrees = (double)(f->residuals - f->count);
+    return f->sigma_known || f->data->sigma
+               ? 1
+               : fmax(chi_square, least * least) / degrees;
+}
+
 static void take_errors(fitting *f, const gsl_matrix *jacobian) {
     size_t p = f->count;
     double degrees = (double)(f->residuals - p);
-    double scale =
-        f->sigma_known || f->data->sigma ? 1 : f->chi_square / degrees;
+    double scale = variance(f, f->chi_square);
+    bool longer = f->evidence == FIT_WIDENED || f->evidence == FIT_EITHER;
     double wide = f->sigma_known || f->data->sigma
                       ? gsl_cdf_ugaussian_Pinv(0.975)
                       : gsl_cdf_tdist_Pinv(0.975, degrees);
@@ -214,7 +253,7 @@ static void take_errors(fitting *f, const gsl_matrix *jacobian) {
     for (size_t k = 0; k < p; k++) {
         varied *v = &f->item[k];
         v->error = sqrt(scale * gsl_matrix_get(c, k, k)) * v->scale;
-        double more = f->evidence == FIT_WIDENED ? fabs(v->moved) : 0;
+        double more = longer ? fabs(v->moved) : 0;
         v->low = v->value - wide * v->error - more;
         v->high = v->value + wide * v->error + more;
         for (size_t i = 0; i < p; i++)
@@ -297,35 +336,18 @@ typedef struct {
     bool far;   /* so much that the minimum may be another one */
 } change;
 
-/* The least squares solution of J x = d, or of its part that x does not explain,
-   in d. */
-static void explain(const gsl_matrix *jacobian, gsl_vector *d, gsl_matrix *c,
-                    gsl_vector *x) {
-    gsl_vector *slope = new_vector(x->size);
-    gsl_multifit_nlinear_covar(jacobian, 0, c);
-    gsl_blas_dgemv(CblasTrans, 1, jacobian, d, 0, slope);
-    gsl_blas_dgemv(CblasNoTrans, 1, c, slope, 0, x);
-    gsl_blas_dgemv(CblasNoTrans, -1, jacobian, x, 1, d);
-    gsl_vector_free(slope);
-}
-
-static double variance(const fitting *f, double chi_square) {
-    return f->sigma_known || f->data->sigma
-               ? 1
-               : chi_square / (double)(f->residuals - f->count);
-}
-
 static void judge_change(fitting *f, const attempt *a, gsl_vector *d,
                          change *result) {
     static const double part = 0.1, phase = 0.1;
     gsl_matrix *c = new_matrix(f->count, f->count);
     gsl_vector *x = new_vector(f->count);
     double s = variance(f, a->chi_square), all = gsl_blas_dnrm2(d), worst = 0;
-    double level = gsl_blas_dnrm2(gsl_multifit_nlinear_residual(a->w));
+    double level = fmax(sqrt(a->chi_square), fit_rounding(f));
     explain(gsl_multifit_nlinear_jac(a->w), d, c, x);
     for (size_t k = 0; k < f->count; k++) {
         double moved = -gsl_vector_get(x, k);
-        double of_error = fabs(moved) / sqrt(s * gsl_matrix_get(c, k, k));
+        double error = sqrt(s * gsl_matrix_get(c, k, k));
+        double of_error = moved != 0 ? fabs(moved) / error : 0;
         f->item[k].moved = moved * f->item[k].scale;
         if (!(of_error <= worst)) {
             worst = of_error;
@@ -334,7 +356,7 @@ static void judge_change(fitting *f, const attempt *a, gsl_vector *d,
     }
     if (f->evidence == FIT_UNCHECKED)
         f->worst_part = worst;
-    result->small = worst < part && gsl_blas_dnrm2(d) < part * level;
+    result->small = worst < part && gsl_blas_dnrm2(d) <= part * level;
     result->far = all > phase * f->spread;
     gsl_matrix_free(c);
     gsl_vector_free(x);
@@ -389,14 +411,37 @@ static bool refine(fitting *f, attempt *a, bool stepwise) {
     return true;
 }
 
+/* Data that the given scheme itself made: its residuals are rounding, and those of
+   more exact orbits are not; or both are.
+   x, chi_square  of the given scheme */
+static void weigh_given(fitting *f, attempt *a, const gsl_vector *x,
+                        double chi_square) {
+    if (fit_is_given(f) || !fit_is_rounding(f, chi_square))
+        return;
+    for (size_t k = 0; !a->status && k < f->count; k++)
+        f->item[k].moved =
+            (gsl_vector_get(a->x, k) - gsl_vector_get(x, k)) * f->item[k].scale;
+    bool either = !a->status && fit_is_rounding(f, a->chi_square);
+    f->evidence = either ? FIT_EITHER : FIT_GIVEN;
+    if (either)
+        return;
+    f->now = f->given;
+    attempt_free(a);
+    *a = attempt_from(f, copy_vector(x));
+}
+
 static void check_scheme(fitting *f, attempt *a) {
     static const uint64_t dearer = 300, least = 100000;
+    gsl_vector *x = copy_vector(a->x);
+    double chi_square = a->chi_square;
     f->most = dearer * f->cost + least;
     if (!refine(f, a, false) && f->evidence == FIT_UNCHECKED)
         if (!refine(f, a, true)) {
             f->unchecked = f->why;
             f->why = NULL;
         }
+    weigh_given(f, a, x, chi_square);
+    gsl_vector_free(x);
     f->most = 0;
 }
 
