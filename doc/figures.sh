@@ -64,7 +64,6 @@ done
 echo "nevh hard" >&2
 "$nevh" hard --all --format csv -o "$srcdir/doc/hard.csv" 2>/dev/null
 awk -f "$srcdir/doc/hard.awk" "$srcdir/doc/hard.csv" >"$srcdir/doc/hard.txt"
-sed -n '1p; $p' "$srcdir/doc/hard.txt" >"$srcdir/doc/hard-all.txt"
 rm -f "$srcdir/doc/hard.csv"
 
 # Of verdicts on scenes that do not ship, all groups together.  Long runs are made

@@ -76,8 +76,7 @@ doc/nevh.1: $(tools_nevh_SOURCES) doc/nevh.h2m configure.ac \
 	    --include $(srcdir)/doc/nevh.h2m --output $@ ./tools/nevh$(EXEEXT)
 endif
 EXTRA_DIST += doc/nevh.h2m doc/nevh.3.head doc/reference.awk doc/figures.sh doc/hard.awk \
-	doc/nevh-cost.txt doc/energy.svg \
-	doc/hard-all.txt
+	doc/nevh-cost.txt doc/energy.svg
 
 # Worksheets: every number is measured again.
 EXTRA_DIST += doc/sheets/sheets.texi doc/sheets/answers.texi doc/sheets/numbers.texi \

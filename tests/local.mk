@@ -96,7 +96,7 @@ suites = \
 	tests/robust/check_hard_steps \
 	tests/robust/check_hard \
 	tests/robust/check_hard_pendulum \
-	tests/tool/check_hard_judge \
+	tests/hard/check_hard_cases \
 	tests/scheme/check_implicit \
 	tests/scheme/check_stiff \
 	tests/scheme/check_brouwer \
@@ -138,16 +138,18 @@ tests_tool_check_grid_SOURCES = tests/tool/check_grid.c tools/search/grid.c
 tests_tool_check_plot_thin_SOURCES = tests/tool/check_plot_thin.c \
 	tools/plot/plot_thin.c \
 	tools/cli/words.c
-tests_tool_check_hard_judge_SOURCES = tests/tool/check_hard_judge.c \
-	tools/hard/hard_private.h \
+tests_hard_check_hard_cases_SOURCES = tests/hard/check_hard_cases.c \
+	tests/hard/hard_judge.h \
+	tests/hard/hard_known.c \
+	tests/hard/hard_subject.c \
+	tests/hard/hard_state.c \
+	tests/hard/hard_run.c \
+	tests/hard/hard_judge.c \
+	tools/hard/hard_cases.h \
 	tools/hard/hard_cases.c \
-	tools/hard/hard_subject.c \
-	tools/hard/hard_state.c \
-	tools/hard/hard_run.c \
-	tools/hard/hard_judge.c \
 	tools/experiment/stability.c \
 	tools/cli/words.c
-tests_tool_check_hard_judge_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE
+tests_hard_check_hard_cases_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE
 tests_ensemble_check_random_LDADD = $(INSIDE_LIBS)
 tests_ensemble_check_sweep_LDADD = $(INSIDE_LIBS) $(GSL_LIBS)
 tests_diagnose_check_frequencies_LDADD = $(TEST_LIBS) $(GSL_LIBS)
@@ -303,7 +305,6 @@ check-slow:
 	srcdir=$(srcdir) SLOW=yes $(SHELL) $(srcdir)/tests/tool/nevh_recommend.sh
 	srcdir=$(srcdir) SLOW=yes $(SHELL) $(srcdir)/tests/tool/nevh_native.sh
 	srcdir=$(srcdir) SLOW=yes $(SHELL) $(srcdir)/tests/tool/nevh_memory.sh
-	NEVH_SCENES='$(srcdir)/scenes' tools/nevh hard --quiet
 	srcdir=$(srcdir) $(SHELL) $(srcdir)/tests/robust/long_sweeps.sh
 	$(MAKE) $(AM_MAKEFLAGS) bench/verdicts$(EXEEXT)
 	bench/verdicts$(EXEEXT) -s 0.1 -w 0.1 $(srcdir) $(LISTS)

@@ -22,6 +22,7 @@ tools_nevh_SOURCES = \
 	tools/experiment/plan.c \
 	tools/experiment/stop.c \
 	tools/experiment/row.c \
+	tools/experiment/row_list.c \
 	tools/experiment/follow.c \
 	tools/experiment/row_time.c \
 	tools/experiment/stepper_cache.c \
@@ -69,12 +70,8 @@ tools_nevh_SOURCES = \
 	tools/search/remedy.c \
 	tools/experiment/trial_run.c \
 	tools/inspect/smoothness.c \
-	tools/hard/hard_private.h \
+	tools/hard/hard_cases.h \
 	tools/hard/hard_cases.c \
-	tools/hard/hard_subject.c \
-	tools/hard/hard_state.c \
-	tools/hard/hard_run.c \
-	tools/hard/hard_judge.c \
 	tools/hard/hard.c \
 	tools/ensemble/store.h \
 	tools/ensemble/store.c \

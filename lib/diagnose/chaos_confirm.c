@@ -42,7 +42,10 @@ static int follow(nevh_chaos *c, double until, double seconds, bool sought,
     double t0 = c->t_start, growth = 0;
     int status = nevh_chaos_status(c);
     for (int i = 1; !status && i <= PIECES && spent_by(c) < seconds; i++) {
-        status = nevh_chaos_run(c, t0 + i * (until - t0) / PIECES);
+        double last = nevh__chaos_steps(c, t0 + i * (until - t0) / PIECES);
+        while (spent_by(c) < seconds && nevh__chaos_advance(c, last))
+            ;
+        status = c->report.status;
         growth = fmax(growth, nevh__chaos_growth(c, 0));
         if (sought && nevh_chaos_result(c).verdict == NEVH_CHAOTIC)
             break;

@@ -110,6 +110,8 @@ void nevh__chaos_put(nevh_chaos *, size_t start, size_t v);
 double nevh__chaos_look(nevh_chaos *, size_t start);
 /* The steps that lead nearest to `until`. */
 double nevh__chaos_steps(const nevh_chaos *, double until);
+/* Goes on to the next look, or to the step `last`; false: it is over. */
+bool nevh__chaos_advance(nevh_chaos *, double last);
 /* chaos_report.c: of one start. */
 /* All growth of displacements, as a logarithm. */
 double nevh__chaos_growth(const nevh_chaos *, size_t start);

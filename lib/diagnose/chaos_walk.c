@@ -271,23 +271,29 @@ double nevh__chaos_steps(const nevh_chaos *c, double until) {
     return rint(c->way * (until - c->t_start) / c->dt);
 }
 
+bool nevh__chaos_advance(nevh_chaos *c, double last) {
+    double done = c->start[0].clock.done, stride = (double)c->stride;
+    if (c->report.status || !(done < last))
+        return false;
+    /* Looks come at multiples of the stride, however a run is cut. */
+    double steps = fmin(last - done, stride - fmod(done, stride));
+    int status = nevh_run(c->stepper, c->t_start + done * c->way * c->dt,
+                          c->way * c->dt, (size_t)steps, c->q, c->p, NULL, 0);
+    if (status) {
+        nevh__fail(&c->report, status, "%s", nevh_stepper_message(c->stepper));
+        return false;
+    }
+    look(c, steps);
+    if (!c->tangent) /* what one lane remembers no other knows of */
+        nevh_stepper_reset(c->stepper);
+    return true;
+}
+
 int nevh_chaos_run(nevh_chaos *c, double until) {
     if (!c || !isfinite(until))
         return NEVH_EINVAL;
     double last = nevh__chaos_steps(c, until);
-    while (!c->report.status && c->start[0].clock.done < last) {
-        /* Looks come at multiples of the stride, however a run is cut. */
-        double done = c->start[0].clock.done, stride = (double)c->stride;
-        double steps = fmin(last - done, stride - fmod(done, stride));
-        int status =
-            nevh_run(c->stepper, c->t_start + done * c->way * c->dt,
-                     c->way * c->dt, (size_t)steps, c->q, c->p, NULL, 0);
-        if (status)
-            return nevh__fail(&c->report, status, "%s",
-                              nevh_stepper_message(c->stepper));
-        look(c, steps);
-        if (!c->tangent) /* what one lane remembers no other knows of */
-            nevh_stepper_reset(c->stepper);
-    }
+    while (nevh__chaos_advance(c, last))
+        ;
     return c->report.status;
 }

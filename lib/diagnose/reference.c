@@ -72,7 +72,8 @@ bool nevh__reference_is_chaotic(nevh_reference *r, double reached,
     if (!room)
         return false;
     nevh_chaos_verdict verdict = find_chaos(r, r->t1, &f);
-    if (verdict == NEVH_EARLY)
+    bool whole = fabs(f.report.t - r->t1) < 1e-6 * fabs(span);
+    if (verdict == NEVH_EARLY && whole) /* not short of time to compute */
         verdict = find_chaos(r, r->t0 + longer * span, &f);
     if (verdict == NEVH_CHAOTIC)
         r->exponent = f.exponent;

@@ -164,9 +164,8 @@ static int not_found(const char *name) {
     return TOOL_USAGE;
 }
 
-char *scene_file(const char *beside, const char *name) {
-    char *file = text_print("%s%s%s/%s%s", scenes_folder(), *beside ? "/" : "",
-                            beside, name, ending);
+char *scene_file(const char *name) {
+    char *file = text_print("%s/%s%s", scenes_folder(), name, ending);
     if (is_file(file))
         return file;
     free(file);
@@ -177,7 +176,8 @@ char *scene_file(const char *beside, const char *name) {
 static char *find(const char *name) {
     if (is_file(name))
         return text_print("%s", name);
-    char *file = strchr(name, '/') ? NULL : scene_file("", name);
+    bool hard = strncmp(name, "hard/", 5) == 0;
+    char *file = strchr(name, '/') && !hard ? NULL : scene_file(name);
     if (!file)
         not_found(name);
     return file;

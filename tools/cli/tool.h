@@ -370,9 +370,8 @@ int scenes_missing(void);
 /* Names of installed scenes, sorted; with their files when `files` is not
    NULL. */
 void scenes_installed(list *names, list *files);
-/* The file of a scene in a folder given from that of the installed ones; NULL
-   when there is none. */
-char *scene_file(const char *beside, const char *name);
+/* The file of an installed scene, or of "hard/NAME"; NULL when there is none. */
+char *scene_file(const char *name);
 /* What --data names: a file here, or beside the installed scenes; to be freed. */
 char *data_file(const char *name);
 

@@ -10,59 +10,6 @@
 #include <time.h>
 #include <unistd.h>
 
-typedef struct {
-    row *row;
-    size_t count;
-} row_list;
-
-static void add_row(const plan *p, row_list *r, size_t gradient,
-                    const char *name, double dt, double tolerance) {
-    bool transformed;
-    const nevh_integrator *scheme = plan_scheme(name, &transformed);
-    bool same = r->count &&
-                r->row[r->count - 1].gradient == p->gradients.item[gradient] &&
-                r->row[r->count - 1].dt == dt &&
-                (r->row[r->count - 1].tolerance > 0) == (tolerance > 0);
-    size_t group = r->count ? r->row[r->count - 1].group + !same : 0;
-    r->row[r->count++] = (row){.integrator = name,
-                               .gradient = p->gradients.item[gradient],
-                               .scheme = scheme,
-                               .dt = dt,
-                               .tolerance = tolerance,
-                               .group = group};
-}
-
-static bool adapts(const char *name) {
-    bool transformed;
-    return nevh_integrator_adaptive(plan_scheme(name, &transformed));
-}
-
-/* Adaptive schemes land on the ends of the longest dt. */
-static void add_adaptive(const plan *p, row_list *r, size_t gradient) {
-    double longest = 0;
-    for (size_t j = 0; j < p->dts; j++)
-        longest = fmax(longest, p->dt[j]);
-    for (size_t i = 0; i < p->integrators.count; i++)
-        for (size_t k = 0; k < p->tolerances; k++)
-            if (adapts(p->integrators.item[i]))
-                add_row(p, r, gradient, p->integrators.item[i], longest,
-                        p->tolerance[k]);
-}
-
-static row_list list_rows(const plan *p) {
-    size_t most =
-        p->gradients.count * p->integrators.count * (p->dts + p->tolerances);
-    row_list r = {tool_allocate(most, sizeof *r.row), 0};
-    for (size_t g = 0; g < p->gradients.count; g++) {
-        for (size_t j = 0; j < p->dts; j++)
-            for (size_t i = 0; i < p->integrators.count; i++)
-                if (!adapts(p->integrators.item[i]))
-                    add_row(p, &r, g, p->integrators.item[i], p->dt[j], 0);
-        add_adaptive(p, &r, g);
-    }
-    return r;
-}
-
 /* Where stderr is a terminal and the work takes longer than a second. */
 static void progress(const row_list *r, size_t i, double seconds, bool last) {
     if (seconds < 1 || !isatty(STDERR_FILENO))
@@ -265,16 +212,6 @@ static page make_page(const options *o, const plan *p, const row_list *r) {
     return result;
 }
 
-static void free_rows(row_list *r) {
-    for (size_t i = 0; i < r->count; i++) {
-        free(r->row[i].status);
-        free(r->row[i].changes);
-        free(r->row[i].energies);
-        free(r->row[i].errors);
-    }
-    free(r->row);
-}
-
 static int draw_rows(const options *o, const plan *p, const row_list *r) {
     return o->plot.kind == PLOT_ORDER ? order_plot(o, p, r->row, r->count)
                                       : compare_plot(o, p, r->row, r->count);
@@ -307,7 +244,7 @@ static int compare_rows(const options *o, plan *p, row_list *r) {
 }
 
 static int compare_plan(const options *o, plan *p) {
-    row_list r = list_rows(p);
+    row_list r = rows_of(p);
     for (size_t i = 0; i < r.count; i++)
         match_row(p, &r.row[i]);
     int status = plan_reference(p, last_end(p, &r));
@@ -317,7 +254,7 @@ static int compare_plan(const options *o, plan *p) {
         plan_energies(p);
     if (!status)
         status = compare_rows(o, p, &r);
-    free_rows(&r);
+    rows_free(&r);
     return status;
 }
 

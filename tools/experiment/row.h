@@ -53,6 +53,13 @@ typedef struct {
     double *energies; /* errors of the energies of the plan's; NULL: unknown */
 } row;
 void row_run(const plan *, row *);
+/* row_list.c: every integrator with every gradient, and every dt or tolerance. */
+typedef struct {
+    row *row;
+    size_t count;
+} row_list;
+row_list rows_of(const plan *);
+void rows_free(row_list *);
 /* What observes the energy of a row's run. */
 nevh_energy *row_energy(const plan *, const row *, const nevh_stepper *);
 /* follow.c: where the run leaves the verdict open, from a longer one, as far as

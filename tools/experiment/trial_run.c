@@ -180,7 +180,9 @@ static void judge(const trial *f) {
     double seconds = f->slope > large ? little : 0;
     nevh_chaos_find(p->system, &o, begin, begin + length, seconds,
                     &found->chaos);
+    double missing = begin + length - found->chaos.report.t;
     if (found->chaos.report.verdict == NEVH_EARLY && !f->ends && !seconds &&
+        missing < 1e-6 * length &&
         !nevh_chaos_find(p->system, &o, begin, begin + longer * length, 0,
                          &more))
         found->chaos = more;

@@ -1,4 +1,4 @@
-/* nevh hard: whether a run is where it should be, not only its energy.
+/* nevh tests: hard cases: whether a run is where it should be, not only its energy.
 
    Theory: the errors of all steps, of (h omega)^(order + 1) each, are carried
    along by the linearised flow and add up ["Lady Windermere's fan": E. Hairer,
@@ -10,7 +10,7 @@
    Integration, X.3 and XI.3].  The flow is linearised at the orbit itself, and
    omega taken along it.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "hard_private.h"
+#include "hard_judge.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -20,6 +20,8 @@ enum { SAMPLES = 200, LOOKS = 100 };
 /* Taylor's remainder at order 1, x^2/2 in a step; less at higher orders. */
 static const double constant = 0.5;
 static const double most_steps = 1e4;
+/* Radians over which growth is found in seconds. */
+static const double most_angle = 1e6;
 static const double displaced = 1e-9; /* of the range of a variable */
 /* What planning says of differences is an estimate. */
 static const double doubt = 10;
@@ -89,7 +91,8 @@ static void find_growth(hard_orbit *k, const hard_subject *s) {
     spread d = {k, tool_allocate(2 * k->n, sizeof(double)),
                 tool_allocate(k->count, sizeof(double))};
     nevh_stepper *m = fine(k, s);
-    bool lost = nevh_stepper_status(m);
+    double angle = s->pace * (k->t_end - s->t);
+    bool lost = nevh_stepper_status(m) || angle > most_angle;
     for (size_t i = 0; !lost && i < 2 * k->n; i++)
         lost = follow(&d, s, m, i);
     for (size_t i = 0; i < k->count; i++)
@@ -161,13 +164,13 @@ static void choose_system(hard_orbit *k, const hard_subject *s) {
     k->n = s->n;
     if (!s->own)
         return;
-    k->scene = hard_scene("pendulum-modulus");
+    k->scene = hard_scene("hard/pendulum-modulus");
     k->system = nevh_scene_system(k->scene);
 }
 
 hard_orbit *hard_orbit_new(const hard_subject *s) {
     double span = fmin(s->t_end - s->t, most_steps * s->dt);
-    if (span > 1e200 || s->decl->facts & HARD_KINK)
+    if (span > 1e200 || s->known.facts & HARD_KINK)
         return NULL;
     hard_orbit *k = tool_allocate(1, sizeof *k);
     choose_system(k, s);
@@ -177,7 +180,7 @@ hard_orbit *hard_orbit_new(const hard_subject *s) {
     k->count = SAMPLES + 1;
     k->range = tool_allocate(2 * k->n, sizeof *k->range);
     for (size_t i = 0; i < 2 * k->n; i++)
-        k->range[i] = s->decl->facts & HARD_REST
+        k->range[i] = s->known.facts & HARD_REST
                           ? 1
                           : nevh_reference_range(k->reference, i);
     k->t = tool_allocate(3 * k->count, sizeof *k->t);
@@ -292,7 +295,7 @@ static void allow_rest(hard_state *w, const hard_subject *s,
 /* Increments of the state take the place of a gradient's steps, and go down to
    0, where noise in H is divided by them. */
 static bool divides_noise(const hard_subject *s, const hard_result *r) {
-    return s->decl->facts & HARD_NOISE &&
+    return s->known.facts & HARD_NOISE &&
            nevh_integrator_preserves_energy(r->scheme) == NEVH_YES &&
            nevh_integrator_sweep_gradients(r->scheme) == 0;
 }

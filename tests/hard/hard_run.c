@@ -1,6 +1,6 @@
-/* nevh hard: one case with one scheme and gradient, within a budget.
+/* nevh tests: hard cases: one case with one scheme and gradient, within a budget.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "hard_private.h"
+#include "hard_judge.h"
 #include <float.h>
 #include <math.h>
 #include <signal.h>
@@ -147,12 +147,12 @@ static void find_pace(const hard_subject *s, const nevh_options *o,
 
 static void run_planned(const hard_subject *s, nevh_stepper *m,
                         const nevh_options *o, double budget, hard_result *r) {
-    bool stops = s->decl->facts & HARD_ENDLESS;
+    bool stops = s->known.facts & HARD_ENDLESS;
     r->order = nevh_stepper_order(m);
     r->floor = find_floor(s, m, r->asked);
     r->state_floor = find_noise(s, m, fmin(r->asked, 1e4));
     integrate(s, m, o, stops ? fmin(budget, endless) : budget, r);
-    if (s->decl->facts & HARD_RETURN && !r->status)
+    if (s->known.facts & HARD_RETURN && !r->status)
         turn_back(s, m, r);
     if (!stops && o->tolerance == 0 &&
         (r->status || r->energy.max > unstable_above))
@@ -190,7 +190,7 @@ void hard_end(void) {
 
 void hard_run(const hard_subject *s, double budget, hard_result *r) {
     nevh_options o = plan_with(s, r);
-    hard_begin(s->decl->name, r->scheme, patience * budget);
+    hard_begin(s->known.given.name, r->scheme, patience * budget);
     nevh_stepper *m = nevh_stepper_new(s->system, r->scheme, &o);
     r->status = nevh_stepper_status(m);
     r->planned = !r->status;

@@ -1,4 +1,4 @@
-/* nevh hard: what a result means, by what is known of scheme and case.
+/* nevh tests: hard cases: what a result means, by what is known of scheme and case.
 
    Theory: steps of order r conserve an energy that differs from H by a part
    (h omega)^r of what the orbit exchanges, if they are symplectic, or symmetric
@@ -6,7 +6,7 @@
    Numerical Integration, chapters IX and XI]; those of other methods add an
    error of (h omega)^(r+1) in each step.  Constants are taken to be below 10.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "hard_private.h"
+#include "hard_judge.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +23,7 @@ const char *hard_verdict_name(hard_verdict v) {
 }
 
 static bool is(const hard_subject *s, unsigned facts) {
-    return s->decl->facts & facts;
+    return s->known.facts & facts;
 }
 
 /* Of the orbit as it should be: where a run went astray excuses nothing. */

@@ -1,6 +1,6 @@
-/* nevh hard: a case made ready, and what its orbit is like.
+/* nevh tests: hard cases: a case made ready, and what its orbit is like.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "hard_private.h"
+#include "hard_judge.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,13 +9,8 @@
 enum { SAMPLES = 200 };
 static const double most_work = 1e6;
 
-static char *find(const char *name) {
-    char *file = scene_file("hard", name);
-    return file ? file : scene_file("", name);
-}
-
 nevh_scene *hard_scene(const char *name) {
-    char *file = find(name);
+    char *file = scene_file(name);
     nevh_scene *scene = file ? nevh_scene_read(file) : NULL;
     free(file);
     return scene;
@@ -31,27 +26,30 @@ static int change(nevh_scene *scene, const char *settings) {
 }
 
 static int open_scene(hard_subject *s) {
-    s->scene = hard_scene(s->decl->scene);
+    const hard_case *c = &s->known.given;
+    s->scene = hard_scene(c->scene);
     if (!s->scene)
-        return tool_refuse("scene %s of the hard cases not found",
-                           s->decl->scene);
-    if (!nevh_scene_status(s->scene) && s->decl->settings)
-        change(s->scene, s->decl->settings);
+        return tool_refuse("scene %s of the hard cases not found", c->scene);
+    if (!nevh_scene_status(s->scene) && c->settings)
+        change(s->scene, c->settings);
     if (nevh_scene_status(s->scene))
         return tool_refuse("%s", nevh_scene_message(s->scene));
     const nevh_scene_run *run = nevh_scene_run_settings(s->scene);
     s->system = nevh_scene_system(s->scene);
     s->t = run->t_start;
-    s->dt = s->decl->dt > 0 ? s->decl->dt : run->dt[0];
-    s->t_end = s->decl->t_end > 0 ? s->t + s->decl->t_end : run->t_end;
+    s->dt = run->dt[0];
+    s->t_end = run->t_end;
+    if ((c->dt && nevh_scene_number(s->scene, c->dt, &s->dt)) ||
+        (c->t_end && nevh_scene_number(s->scene, c->t_end, &s->t_end)))
+        return tool_refuse("%s", nevh_scene_message(s->scene));
     s->gradient_step = run->gradient_step;
     return TOOL_OK;
 }
 
 static void make_own(hard_subject *s) {
-    s->system = s->own = s->decl->make();
-    s->dt = s->decl->dt;
-    s->t_end = s->decl->t_end;
+    s->system = s->own = s->known.make();
+    s->dt = atof(s->known.given.dt);
+    s->t_end = atof(s->known.given.t_end);
 }
 
 static void start(hard_subject *s) {
@@ -152,13 +150,13 @@ static void explore(hard_subject *s) {
     free(v.slope);
 }
 
-int hard_open(hard_subject *s, const hard_case *decl) {
-    *s = (hard_subject){.decl = decl};
-    if (decl->scene && open_scene(s)) {
+int hard_open(hard_subject *s, const hard_known *known) {
+    *s = (hard_subject){.known = *known};
+    if (known->given.scene && open_scene(s)) {
         hard_close(s);
         return TOOL_USAGE;
     }
-    if (!decl->scene)
+    if (!known->given.scene)
         make_own(s);
     start(s);
     explore(s);

@@ -1,9 +1,10 @@
-/* nevh hard: cases, what came of them, and the judge.
+/* nevh tests: hard cases, what came of them, and their judge.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef NEVH_HARD_PRIVATE_H
-#define NEVH_HARD_PRIVATE_H
+#ifndef NEVH_HARD_JUDGE_H
+#define NEVH_HARD_JUDGE_H
 
 #include "experiment/pace.h"
+#include "hard/hard_cases.h"
 
 /* What is known of a case beforehand, an or. */
 enum {
@@ -23,21 +24,19 @@ enum {
 };
 
 typedef struct {
-    const char *name;
-    const char *scene;    /* of scenes/ or of the hard cases; NULL: `make` */
-    const char *settings; /* "NAME=VALUE; -EFFECT"; NULL: none */
-    double dt, t_end;     /* 0: the scene's */
+    hard_case given; /* of nevh hard; without a scene: `make` */
     unsigned facts;
     nevh_system *(*make)(void); /* one degree of freedom, from (1, 0) */
-} hard_case;
-/* Ended by one without a name. */
-extern const hard_case hard_cases[];
+} hard_known;
+/* A case of nevh hard, or of the tests alone, by number; given.name is NULL
+   after the last. */
+hard_known hard_known_at(size_t);
 
 typedef struct hard_orbit hard_orbit;
 
 /* A case made ready, and what its orbit is like. */
 typedef struct {
-    const hard_case *decl;
+    hard_known known;
     nevh_scene *scene;
     nevh_system *own; /* made by `make` */
     const nevh_system *system;
@@ -54,7 +53,7 @@ typedef struct {
 } hard_subject;
 /* Of the hard cases, which are beside the scenes, or of the scenes; NULL. */
 nevh_scene *hard_scene(const char *name);
-int hard_open(hard_subject *, const hard_case *); /* as scene_open */
+int hard_open(hard_subject *, const hard_known *); /* as scene_open */
 void hard_close(hard_subject *);
 
 typedef enum {

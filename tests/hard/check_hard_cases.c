@@ -1,6 +1,7 @@
-/* nevh tests: the judge of nevh hard passes what is good, and nothing else.
+/* nevh tests: every hard case ends in what theory expects, by a judge that passes
+   what is good, and nothing else.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "hard/hard_private.h"
+#include "hard_judge.h"
 #include "support.h"
 #include <math.h>
 #include <nevh/extend.h>
@@ -11,17 +12,9 @@
 #include <unistd.h>
 
 /* What the cases ask of the rest of the tool. */
-char *scene_file(const char *beside, const char *name) {
+char *scene_file(const char *name) {
     const char *source = getenv("srcdir");
-    bool hard = strcmp(beside, "hard") == 0;
-    if (!hard && strcmp(beside, ".") != 0)
-        return NULL;
-    char *file = text_print("%s/%s/%s.nevh", source ? source : ".",
-                            hard ? "scenes/hard" : "scenes", name);
-    if (access(file, R_OK) == 0)
-        return file;
-    free(file);
-    return NULL;
+    return text_print("%s/scenes/%s.nevh", source ? source : ".", name);
 }
 nevh_options plan_options(const plan *p, const char *gradient) {
     (void)p, (void)gradient;
@@ -36,28 +29,63 @@ static const char regular[] = "Henon-Heiles at 1/12";
 static const char fine[] = "Henon-Heiles, small steps";
 static const char planets[] = "outer planets";
 
-static hard_verdict judged(const nevh_integrator *scheme, const char *name,
-                           double budget) {
-    const hard_case *c = hard_cases;
-    while (strcmp(c->name, name) != 0)
-        ck_assert_ptr_nonnull((++c)->name);
+static hard_verdict judged_with(const nevh_integrator *scheme,
+                                const char *gradient, const hard_known *known,
+                                double budget) {
     hard_subject s;
-    hard_result r = {.scheme = scheme, .gradient = "exact"};
-    ck_assert_int_eq(hard_open(&s, c), TOOL_OK);
+    hard_result r = {.scheme = scheme, .gradient = gradient};
+    ck_assert_int_eq(hard_open(&s, known), TOOL_OK);
     hard_begin("oscillator", scheme, 60);
     r.limit = nevh_stability_limit(scheme);
     hard_end();
     hard_run(&s, budget, &r);
     hard_judge(&s, &r);
-    printf("%s, %s: %s: %s\n", name, nevh_integrator_name(scheme),
-           hard_verdict_name(r.verdict), r.happened);
+    printf("%s, %s, %s: %s: %s\n", known->given.name,
+           nevh_integrator_name(scheme), gradient, hard_verdict_name(r.verdict),
+           r.happened);
     hard_result_free(&r);
     hard_close(&s);
     return r.verdict;
 }
 
+static hard_verdict judged(const nevh_integrator *scheme, const char *name,
+                           double budget) {
+    size_t i = 0;
+    while (strcmp(hard_known_at(i).given.name, name) != 0)
+        ck_assert_ptr_nonnull(hard_known_at(++i).given.name);
+    hard_known known = hard_known_at(i);
+    return judged_with(scheme, "exact", &known, budget);
+}
+
 static hard_verdict judge(const nevh_integrator *scheme, const char *name) {
     return judged(scheme, name, 1e6);
+}
+
+enum { CASES = 53 };
+
+static void judge_case(int number, const nevh_integrator *const schemes[],
+                       const char *const gradients[]) {
+    hard_known known = hard_known_at((size_t)number);
+    ck_assert_ptr_null(hard_known_at(CASES).given.name);
+    for (; *gradients; gradients++)
+        for (size_t i = 0; schemes[i]; i++)
+            ck_assert_int_gt(judged_with(schemes[i], *gradients, &known, 1e6),
+                             HARD_WRONG);
+}
+
+/* No case without a verdict, and none on a wrong orbit. */
+TEST_EACH(every_case, CASES) {
+    static const char *const gradients[] = {"central6", NULL};
+    const nevh_integrator *const schemes[] = {nevh_verlet,          nevh_gauss4,
+                                              nevh_gonzalez,        nevh_rk4,
+                                              nevh_adaptive_verlet, NULL};
+    judge_case(_i, schemes, gradients);
+}
+
+TEST_TAGGED(every_case_with_every_scheme, "slow", 0, CASES) {
+    static const char *const gradients[] = {"central2", "central6", "exact",
+                                            NULL};
+    judge_case(_i, nevh_integrators(), gradients);
 }
 
 TEST_EACH(good_ones_pass, 4) {
