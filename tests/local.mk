@@ -244,6 +244,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_integrable.sh \
 	tests/tool/nevh_time.sh \
 	tests/tool/nevh_hard.sh \
+	tests/tool/nevh_exit.sh \
 	tests/tool/nevh_cost.sh \
 	tests/tool/nevh_recommend.sh \
 	tests/python/python.sh \

@@ -3,13 +3,20 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
 #include "config.h"
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* What an exit status says, from 0 on. */
-static const char *const statuses[] = {"", " when a row failed numerically",
-                                       " for bad input or usage",
-                                       " when a sweep was stopped early"};
+/* What an exit status says. */
+static const struct {
+    int status;
+    const char *when;
+} statuses[] = {
+    {TOOL_OK, "when all was done, also where rows are unstable or refused"},
+    {TOOL_FAILED, "when a computation ended early"},
+    {TOOL_USAGE, "for wrong input or usage, or output that cannot be written"},
+    {TOOL_STOPPED, "when a sweep was stopped and can be resumed"},
+    {128 + SIGINT, "when nevh was interrupted"}};
 enum { STATUSES = sizeof statuses / sizeof *statuses };
 
 /* Space between the name and the text of a command, and nowhere else: help2man
@@ -45,8 +52,8 @@ static void print_all(FILE *f) {
     char *text = text_print("SCENE is a file, or a name of nevh list scenes.  "
                             "Exit status:");
     for (int i = 0; i < STATUSES; i++) {
-        char *more = text_print("%s %d%s%s", text, i, statuses[i],
-                                i + 1 < STATUSES ? ";" : ".");
+        char *more = text_print("%s %d %s%s", text, statuses[i].status,
+                                statuses[i].when, i + 1 < STATUSES ? ";" : ".");
         free(text);
         text = more;
     }
@@ -182,8 +189,8 @@ static int print_json(const command *c) {
         }
     fputs("\n ],\n \"exit_status\": {", stdout);
     for (int i = 0; i < STATUSES; i++)
-        printf("%s\"%d\": \"%s\"", i ? ", " : "", i,
-               i ? statuses[i] + 1 : "success");
+        printf("%s\"%d\": \"%s\"", i ? ", " : "", statuses[i].status,
+               statuses[i].when);
     fputs("}}\n", stdout);
     return TOOL_OK;
 }

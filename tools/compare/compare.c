@@ -236,11 +236,11 @@ static int compare_rows(const options *o, plan *p, row_list *r) {
     page_free(&result);
     for (size_t i = 0; i < r->count; i++)
         if (r->row[i].failed)
-            status = TOOL_FAILED;
+            status = row_fails(p, &r->row[i]);
     status = output_close(&out, status);
     if (plot_wanted(o) && !first)
         drawn = draw_rows(o, p, r);
-    return drawn ? TOOL_USAGE : status;
+    return drawn > status ? drawn : status;
 }
 
 static int compare_plan(const options *o, plan *p) {

@@ -54,8 +54,13 @@ int compare_plot(const options *o, const plan *p, const row rows[],
             begin_panel(&to, p, &rows[i]);
         draw_row(to, p, &rows[i]);
     }
-    if (!to)
-        return tool_refuse("there is nothing to plot: no row has numbers");
+    if (!to) {
+        bool failed = false;
+        for (size_t i = 0; i < count; i++)
+            failed |= rows[i].failed;
+        tool_refuse("there is nothing to plot: no row has numbers");
+        return failed ? TOOL_FAILED : TOOL_USAGE;
+    }
     plot_same_ranges(to);
     char *more = energy_plot_words(p);
     plot_note_run(to, p, NULL, more);

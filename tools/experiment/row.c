@@ -345,3 +345,9 @@ void row_finish(const plan *p, row *r) {
         unstable_since(&w);
     work_free(&w);
 }
+
+int row_fails(const plan *p, const row *r) {
+    tool_refuse("%s: %s with %s at dt = %.4g %s", p->name, r->integrator,
+                r->gradient, r->dt, r->status);
+    return TOOL_FAILED;
+}

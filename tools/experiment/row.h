@@ -104,6 +104,8 @@ void stop_notes(const plan *, const row rows[], size_t count, list *notes);
     "sweeps,seconds,verdict,observed_order,seconds_spread"
 /* records.c: rows as the columns of CSV and JSON. */
 table *records(const plan *, const row rows[], size_t count);
+/* Says on stderr which row failed and why; TOOL_FAILED. */
+int row_fails(const plan *, const row *);
 /* row_notes.c: observed_order, of rows with the same scheme beside each other;
    notes of settings, gradients, scale and what holds for some rows. */
 void observe_orders(row rows[], size_t count);

@@ -147,8 +147,12 @@ static int run(const plan *p, price prices[], size_t count, list *notes) {
         list_print(notes, "the run stopped at t = %.9g", stopped);
     list_add(notes, "time: of the gradients of each effect alone, this "
                     "machine's");
-    if (status)
-        list_print(notes, "the run failed: %s", nevh_stepper_message(s));
+    if (status) {
+        char *why = plan_why(p, nevh_stepper_message(s));
+        list_print(notes, "the run failed: %s", why);
+        tool_refuse("%s: the run failed: %s", p->name, why);
+        free(why);
+    }
     nevh_stepper_free(s);
     return status ? TOOL_FAILED : TOOL_OK;
 }

@@ -267,7 +267,8 @@ static void say_chaos(const plan *p, list *words) {
 static int add_all(const options *o, plan *p, page *result, plot **to) {
     size_t count = nevh_system_effect_count(p->system);
     double scale = plan_energy_scale(p);
-    bool apart = false, ran = false, failed = false;
+    bool apart = false, ran = false;
+    char *why = NULL;
     for (size_t i = 0; i < count; i++) {
         char *effect = text_print("%s", nevh_system_effect_name(p->system, i));
         bool on = nevh_system_effect_on(p->system, effect);
@@ -280,14 +281,20 @@ static int add_all(const options *o, plan *p, page *result, plot **to) {
         if (plot_wanted(o) && b.ran)
             draw(to, p, effect, &b);
         ran |= b.ran;
-        failed |= b.integrator && !b.ran;
+        if (b.integrator && !b.ran && !why)
+            why = text_print("%s", b.trace[!b.trace[0].status].message);
         free_both(&b);
         switch_effect(p, effect, on);
         free(effect);
     }
     if (apart)
         say_chaos(p, &result->after);
-    return failed && !ran ? TOOL_FAILED : TOOL_OK;
+    bool failed = why && !ran;
+    if (failed)
+        tool_refuse("%s: no effect can be compared: the run fails: %s", p->name,
+                    why);
+    free(why);
+    return failed ? TOOL_FAILED : TOOL_OK;
 }
 
 static int write_plot(const options *o, plot *to) {

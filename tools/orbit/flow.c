@@ -128,9 +128,12 @@ static int run_row(flow_job *j, flow_row *r, const options *o) {
         nevh_loop_carry(r->eye[i]);
         j->shape.eye = 0;
     }
-    if (status)
-        r->status = text_print("failed: %s", nevh_loop_message(r->loop));
-    return status ? TOOL_FAILED : TOOL_OK;
+    if (!status)
+        return TOOL_OK;
+    r->status = text_print("failed: %s", nevh_loop_message(r->loop));
+    tool_refuse("%s: %s at dt = %.4g %s", j->plan.name, r->integrator, r->dt,
+                r->status);
+    return TOOL_FAILED;
 }
 
 /* All integrators; the first dt, or those that --dt gives. */

@@ -281,6 +281,8 @@ static int find_spectrum(job *j, const char *integrator, observed *a, bool told,
     if (status == NEVH_EDOM && told) {
         list_print(&j->words, "%s, %s failed: it is not finite", integrator,
                    of->name);
+        tool_refuse("%s: %s, %s failed: it is not finite", j->plan.name,
+                    integrator, of->name);
         j->worst = TOOL_FAILED;
     }
     leave_out_rounding(a, of);
@@ -381,9 +383,11 @@ static int run_and_analyse(job *j, const options *o, const char *integrator) {
     if (status)
         list_print(&j->words, "%s %s: %s", integrator,
                    status < 0 ? "refused" : "failed", why);
-    free(why);
-    if (status > 0)
+    if (status > 0) {
+        tool_refuse("%s: %s failed: %s", j->plan.name, integrator, why);
         j->worst = TOOL_FAILED;
+    }
+    free(why);
     return status ? TOOL_OK : analyse(j, o, integrator);
 }
 

@@ -256,9 +256,9 @@ static bool has_verdict(const report_part *part) {
 /* The comparison is what a report is for: without it there is none. */
 static int refuse(const char *scene, const report_part *part) {
     fputs(part->messages ? part->messages : "", stderr);
-    return tool_refuse("%s: no report, since no integrator has a row with "
-                       "numbers",
-                       scene);
+    tool_refuse("%s: no report, since no integrator has a row with numbers",
+                scene);
+    return part->status == TOOL_FAILED ? TOOL_FAILED : TOOL_USAGE;
 }
 
 /* Not where the part has nothing to show. */

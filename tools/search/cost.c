@@ -253,11 +253,7 @@ static int report_failures(const costs *c) {
         for (size_t k = 0; k < c->study[i].count && !failed; k++)
             if (c->study[i].level[k].failed)
                 failed = &c->study[i].level[k];
-    if (status && failed)
-        tool_refuse("%s: %s with %s at dt = %.4g %s", c->search.plan.name,
-                    failed->integrator, failed->gradient, failed->dt,
-                    failed->status);
-    return status;
+    return status && failed ? row_fails(&c->search.plan, failed) : status;
 }
 
 static int draw_costs(const options *o, const costs *c) {

@@ -354,9 +354,10 @@ int context_make(context *c, const plan *p) {
     if (!follow(c, c->yardstick, 0, &(nevh_observer){record, &c->exact, 1}) &&
         !evaluate_yardstick(c))
         return TOOL_OK;
-    tool_refuse("%s: %s at dt = %g fails on this orbit; another integrator or "
-                "a shorter dt may not",
-                p->name, c->integrator, c->dt);
+    char *why = plan_why(p, "another integrator or a shorter dt may not");
+    tool_refuse("%s: %s at dt = %g fails on this orbit: %s", p->name,
+                c->integrator, c->dt, why);
+    free(why);
     return TOOL_FAILED;
 }
 
