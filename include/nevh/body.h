@@ -129,7 +129,7 @@ NEVH__INLINE double nevh__same(double x) {
     return x;
 }
 
-/* Of two numbers one that is NaN wins, so that it is noticed. */
+/* Minimum and maximum that are NaN if either argument is. */
 
 NEVH__INLINE double nevh__real_min(double x, double y) {
     return x != x || x < y ? x : y;
@@ -195,7 +195,7 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
 // clang-format on
 #define NEVH__OWN(f, x) NEVH__ANY(x, nevh__real_##f, nevh__complex_##f)
 
-/* What the body reads, and the functions that it calls. */
+/* The variables, constants and functions that a body may use. */
 #define nevh_q(k)        NEVH__AT(nevh__body_q, k)
 #define nevh_p(k)        NEVH__AT(nevh__body_p, k)
 #define nevh_c(k)        NEVH__AT(nevh__body_c, k)
@@ -287,8 +287,8 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
     .value = name##_value, .block = name##_block,                              \
     .complex_value = name##_complex
 
-/* Where a gradient's body writes.  What nobody wants goes nowhere, and GCC, who
-   knows beforehand, leaves it out with all that leads to it. */
+/* The output rows of a gradient's body.  Derivatives that are not wanted go to a
+   dummy; `wanted` is a constant, so the compiler drops the code that computes them. */
 typedef struct {
     double *x;
     size_t width, lane;
@@ -300,7 +300,7 @@ NEVH__INLINE double *nevh__slope(nevh__slopes d, size_t k) {
     return d.wanted ? d.x + (k * d.width + d.lane) : d.nowhere;
 }
 
-/* What the body of a gradient writes. */
+/* The outputs of a gradient's body. */
 #define nevh_dh_dq(k) (*nevh__slope(nevh__body_dh_dq, (size_t)(k)))
 #define nevh_dh_dp(k) (*nevh__slope(nevh__body_dh_dp, (size_t)(k)))
 

@@ -78,7 +78,7 @@ typedef enum {
    numbers. */
 NEVH_API const char *nevh_chaos_verdict_name(nevh_chaos_verdict);
 
-/* Of the orbit itself; of all starts where it says so.
+/* Results for the orbit itself, or for all starts where a member says so.
 
    CHAOTIC  the largest exponent is above three of its errors, of this start and
             of all that agree; displacements have grown by e^30, which is far more
@@ -123,10 +123,10 @@ NEVH_API double nevh_chaos_exponent(const nevh_chaos *, size_t i,
    deviations [Ch. Skokos, T. C. Bountis, Ch. Antonopoulos, Physica D 231 (2007)
    30]; NAN for other k. */
 NEVH_API double nevh_chaos_gali(const nevh_chaos *, size_t k);
-/* What the stepper evaluated so far, of all lanes; zeros for NULL. */
+/* The evaluations of the stepper so far, of all lanes; zeros for NULL. */
 NEVH_API nevh_counts nevh_chaos_counts(const nevh_chaos *);
 
-/* What the indicators say of H itself, by steps of dop853 with a tolerance. */
+/* The indicators for H itself, from steps of dop853 with a tolerance. */
 typedef struct {
     nevh_chaos_report report; /* of 4 starts, at the time that was reached */
     double exponent, error;   /* as nevh_chaos_exponent */
@@ -161,7 +161,7 @@ typedef struct {
 NEVH_API int nevh_chaos_confirm(const nevh_chaos *, double budget,
                                 nevh_chaos_confirmation *);
 
-/* Whether steps are those of the tangent map.
+/* True if the steps are those of the tangent map.
    why  out, may be NULL: why they are not, else ""; never NULL */
 NEVH_API bool nevh_chaos_is_tangent(const nevh_chaos *, const char **why);
 

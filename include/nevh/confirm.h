@@ -55,14 +55,14 @@ NEVH_API const char *nevh_finer_message(const nevh_finer *);
 NEVH_API nevh_finer_kind nevh_finer_how(const nevh_finer *);
 /* "taylor", "dop853", "verlet, dt = 0.05"; "" where there is none. */
 NEVH_API const char *nevh_finer_text(const nevh_finer *);
-/* What the finer run is planned with, for callers with steppers of their own:
-   NULL and 0 where there is none.  The step of Taylor series is that of the
-   question; that of dop853, which lands on its end, is 16 of them: nevh_run_at
-   has the states between. */
+/* Integrator, options and step of the finer run, for callers with steppers of their
+   own; NULL and 0 if there is none.  Taylor series take the step of the question;
+   dop853, which lands on the end of each step, takes 16 of them, and nevh_run_at
+   gives the states between. */
 NEVH_API const nevh_integrator *nevh_finer_integrator(const nevh_finer *);
 NEVH_API const nevh_options *nevh_finer_options(const nevh_finer *);
 NEVH_API double nevh_finer_dt(const nevh_finer *);
-/* How much of the time of the question the budget is likely to allow, 0 ... 1. */
+/* The part of the question's time that the budget is likely to allow, 0 ... 1. */
 NEVH_API double nevh_finer_part(const nevh_finer *);
 
 /* The finer run, from the start of the question: as nevh_run_until of a stepper
@@ -76,9 +76,9 @@ NEVH_API int nevh_finer_run(nevh_finer *, double t_end, double q[], double p[],
 /* The stepper that takes it, borrowed; NULL where there is none. */
 NEVH_API nevh_stepper *nevh_finer_stepper(nevh_finer *);
 
-/* Whether two values with standard errors may be the same: |a - b| is within
-   three errors of the difference.  An error that is not finite agrees with
-   nothing.  Thread-safe. */
+/* True if two values with standard errors may be the same: |a - b| is within three
+   errors of the difference.  An error that is not finite agrees with nothing.
+   Thread-safe. */
 NEVH_API bool nevh_agree(double a, double a_error, double b, double b_error);
 
 #ifdef __cplusplus

@@ -44,10 +44,10 @@ NEVH_API int nevh_energy_follow(nevh_energy *, const nevh_stepper *stepper);
    returns  NEVH_OK; NEVH_EINVAL when the observer is of more orbits */
 NEVH_API int nevh_energy_book(nevh_energy *, const nevh_timing *timing);
 
-/* Whether a step went past a pole of H, or past an end of its domain, on the
-   straight line between two states: then what follows is not the orbit of H.
-   It is looked for where the error changes by more than in other steps of one
-   orbit, in terms that are formulas.
+/* Tests whether a step passed a pole of H, or an end of its domain, on the straight
+   line between two states; the states after such a step are not on the orbit of H.
+   Only terms that are formulas are tested, at steps whose error changes by more
+   than that of others of the orbit.
    effect   out, may be NULL: whose term it is
    returns  the time after the first such step; NAN where there is none */
 NEVH_API double nevh_energy_passed(const nevh_energy *, const char **effect);
@@ -81,7 +81,7 @@ typedef enum {
 } nevh_verdict;
 NEVH_API const char *nevh_verdict_name(nevh_verdict);
 
-/* What theory says of the error of the energy. */
+/* The error of the energy that theory predicts. */
 typedef enum {
     NEVH_THEORY_NONE,  /* nothing was told: nevh_energy_expect */
     NEVH_THEORY_OPEN,  /* nothing: friction, H of t, symmetric methods */
@@ -175,8 +175,8 @@ typedef struct {
 NEVH_API nevh_verdict nevh_energy_verdict(const nevh_energy_report *,
                                           double times);
 
-/* Whether errors are those of steps that pass over changes of H in time, rather
-   than of the scheme; false for NULL.  Thread-safe. */
+/* True if the errors come from steps that pass over changes of H in time, not from
+   the scheme; false for NULL.  Thread-safe. */
 NEVH_API bool nevh_energy_passes_over(const nevh_energy_report *);
 
 /* About how many seconds of a processor of 2020 that many evaluations of formulas
@@ -201,17 +201,17 @@ typedef struct {
                      not read t: an error that is level stays so */
 } nevh_judged_run;
 
-/* Where the verdict on a run is UNDECIDED, that of a longer one: from the start
-   again, to 2, 4 ... 32 lengths, or 2048 that take a second, until the verdict is
-   another one or the seconds allowed are spent.  BOUNDED is confirmed in the same way: by as many lengths
-   as take a tenth of a second, up to 128, and where neighbours may part by 4 that
-   take a second.  What is then still open is judged by as much as was seen, as are runs
-   that are too long to be followed to 4 lengths.  UNSTABLE of a longer run says
-   nothing of a run whose errors are below 1 % of the limit, or, of H that
-   depends on time, of one that met a quarter of its energies: UNDECIDED, as are
-   errors of the latter that grow no faster than the energies.  Errors of the run
-   itself that rounding explains stay BOUNDED, and so do level ones of an orbit
-   that `stop` ends at energies four times as large.
+/* Replaces the verdict UNDECIDED by that of a longer run: from the start again, to
+   2, 4 ... 32 lengths, or 2048 that take a second, until the verdict is another one
+   or the seconds allowed are spent.  BOUNDED is confirmed in the same way: by as
+   many lengths as take a tenth of a second, up to 128, and where nearby orbits may
+   separate by 4 that take a second.  A run that is then still open, or is too long
+   to be followed to 4 lengths, is judged by the part that was run.  UNSTABLE of a
+   longer run says nothing of a run whose errors are below 1 % of the limit, or, if
+   H depends on time, of one that met a quarter of its energies: the verdict is
+   UNDECIDED.  It is also UNDECIDED if errors of the latter grow no faster than the
+   energies.  Errors of the run itself that rounding explains stay BOUNDED, and so
+   do level errors of an orbit that `stop` ends at energies four times as large.
    stepper  as it took the run, of width 1; begins afresh
    energy   as of the run (nevh_energy_expect, nevh_energy_follow), but new
    report   in and out: nevh_energy_result of the run; of the longer one, whose
@@ -230,9 +230,9 @@ NEVH_API double nevh_energy_error(const nevh_energy *, size_t lane);
 NEVH_API nevh_energy_report nevh_energy_result(const nevh_energy *,
                                                size_t lane);
 
-/* How far one step is from a canonical map: the largest element of
-   |M' J M - J|, where M is the step's derivative with respect to (q, p) in
-   units of `scale`, by sixth-order differences.
+/* The deviation of one step from a canonical map: the largest element of
+   |M' J M - J|, where M is the step's derivative with respect to (q, p) in units of
+   `scale`, by sixth-order differences.
    q, p     in, n each; the stepper's width must be 1
    scale    in, 2n; NULL: ones
    returns  NEVH_OK, NEVH_ENOMEM, NEVH_EINVAL, or what the step returned
@@ -269,7 +269,7 @@ NEVH_API double nevh_stability_growth(const nevh_integrator *, double x);
    beyond the limit, and where there is none. */
 NEVH_API double nevh_stability_angle(const nevh_integrator *, double x);
 
-/* How fast small displacements from an orbit turn round and grow: from the
+/* The rates at which small displacements from an orbit rotate and grow, from the
    eigenvalues of the linearised motion. */
 typedef struct nevh_rates nevh_rates;
 

@@ -35,8 +35,8 @@ typedef struct {
     bool velocities;  /* `value` reads v */
 } nevh_quantity;
 
-/* What is kept of an orbit: kinds of outcomes, which nevh_outcomes lists.  Kinds
-   added later have no constant: nevh_outcome_find finds them by name. */
+/* Kinds of outcomes, numbers that are kept of an orbit; nevh_outcomes lists them.
+   Kinds added later have no constant: nevh_outcome_find finds them by name. */
 typedef enum {
     NEVH_OUTCOME_STATE,        /* coordinates and momenta at the end: 2n */
     NEVH_OUTCOME_TIME,         /* reached */
@@ -151,7 +151,7 @@ NEVH_API const char *nevh_ensemble_message(const nevh_ensemble *);
 NEVH_API size_t nevh_ensemble_columns(const nevh_ensemble *);
 /* Orbits side by side. */
 NEVH_API size_t nevh_ensemble_width(const nevh_ensemble *);
-/* Whether their steps are compiled: nevh_stepper_native, of all side by side. */
+/* True if the steps of orbits side by side are compiled, as nevh_stepper_native. */
 NEVH_API bool nevh_ensemble_native(const nevh_ensemble *, const char **why);
 
 /* Asks for the next orbit.
@@ -161,7 +161,7 @@ NEVH_API bool nevh_ensemble_native(const nevh_ensemble *, const char **why);
             are under way */
 typedef bool (*nevh_member_fn)(void *data, uint64_t *member, double q[],
                                double p[]);
-/* What became of an orbit; valid during the call. */
+/* The result of an orbit; valid during the call. */
 typedef struct {
     uint64_t member;
     int status;           /* NEVH_OK, or that of the step that failed */

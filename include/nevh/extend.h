@@ -41,9 +41,9 @@ typedef struct {
     bool opaque;
     /* Takes no gradients: a transform of time is refused. */
     bool own_slopes;
-    /* Of one orbit: whether a step of h from such memory, of either sign, is
-       read off what it holds, and stays on the orbit that was taken.  Points of
-       sections are then looked for there.  NULL: memory holds no orbit. */
+    /* True if a step of h, of either sign, of one orbit can be evaluated from such
+       memory and stays on the orbit that was taken.  Points of sections are then
+       found there.  NULL: memory holds no orbit. */
     bool (*holds)(const nevh_work *, const double memory[], double h);
 } nevh_kernel;
 
@@ -63,7 +63,7 @@ struct nevh_integrator {
     const void *table; /* what the kernel runs on */
 };
 
-/* What a kernel works with.  Sizes are fixed after `plan`. */
+/* The workspace of a kernel.  Sizes are fixed after `plan`. */
 struct nevh_work {
     const nevh_integrator *integrator;
     const nevh_system *system;
@@ -73,8 +73,8 @@ struct nevh_work {
     const double *scale;   /* 2n lengths, coordinates first; NULL before
                               nevh_work_find_scale */
 
-    /* What the next step needs to know of this one: memory_rows rows of
-       `width` doubles.  A lane that starts afresh finds its column all 0. */
+    /* Memory from one step to the next: memory_rows rows of `width` doubles.  A
+       lane that starts afresh finds its column all 0. */
     size_t memory_rows;
     double *memory;
     size_t scratch_size; /* doubles */

@@ -30,17 +30,17 @@ NEVH_API const char *nevh_gradient_name(const nevh_gradient *);
 /* Order of the difference; 0 for derivatives without truncation error. */
 NEVH_API int nevh_gradient_order(const nevh_gradient *);
 
-/* Whether steps of formulas are compiled, by the C compiler that the environment
-   names (CC) or cc, gcc or clang, and run as native code.  The orbit is the same
-   to the last bit.  By default they are where the steps foreseen make up for the
-   time that compiling takes. */
+/* The choice of compiled steps of formulas: native code by the C compiler that the
+   environment names (CC) or cc, gcc or clang.  The orbit is the same to the last
+   bit.  By default steps are compiled if the expected number of steps repays the
+   compiler's time. */
 typedef enum {
     NEVH_NATIVE_AUTO,
     NEVH_NATIVE_ALWAYS,
     NEVH_NATIVE_NEVER
 } nevh_native_use;
 
-/* How to plan a field or a stepper; zeros and NULLs are the defaults. */
+/* Options of planning a field or a stepper; zeros and NULLs are the defaults. */
 typedef struct {
     const nevh_gradient *gradient; /* NULL: nevh_central4 */
     double gradient_step;          /* the half-spread delta of every coordinate
@@ -136,9 +136,9 @@ NEVH_API int nevh_field_groups(nevh_field *, double t, const double q[],
 NEVH_API double nevh_field_step(const nevh_field *, const char *term,
                                 size_t instance, size_t i);
 
-/* How the step of one variable of one term instance came about, and which
-   errors of the derivative to expect: estimates, the worst over the states
-   that were tried when the field was planned. */
+/* The origin of the difference step of one variable of one term instance, and
+   estimates of the errors of the derivative, the worst over the states tried in
+   planning. */
 typedef struct {
     const char *term, *effect;
     size_t instance;
@@ -167,8 +167,8 @@ NEVH_API int nevh_field_energy_floor(nevh_field *, double t, const double q[],
                                      const double p[], double h, size_t steps,
                                      double *floor);
 
-/* What a field has been asked for since it was made.  The counts depend only
-   on what was computed, never on padding or on the machine. */
+/* Counts of evaluations of a field since it was made.  They depend only on the
+   computation, never on padding or on the machine. */
 typedef struct {
     uint64_t values;     /* evaluations of term instances */
     uint64_t gradients;  /* evaluations of dH/dq of all enabled terms; where H

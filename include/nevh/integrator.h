@@ -13,9 +13,9 @@ extern "C" {
 
 typedef struct nevh_integrator nevh_integrator;
 
-/* What is claimed of a scheme.  UNPROVEN is an answer; EXTENDED holds in the
-   larger space that the scheme works in (with a second copy of the state, or
-   the density of its steps), not for (q, p) alone. */
+/* A claim about a scheme.  UNPROVEN is an answer; EXTENDED holds in the larger
+   space that the scheme works in (with a second copy of the state, or the density
+   of its steps), not for (q, p) alone. */
 typedef enum { NEVH_NO, NEVH_YES, NEVH_UNPROVEN, NEVH_EXTENDED } nevh_claim;
 /* "no", "yes", "unproven", "extended". */
 NEVH_API const char *nevh_claim_name(nevh_claim);
@@ -104,7 +104,7 @@ NEVH_API extern const nevh_integrator *const nevh_taylor;
 
 /* All schemes, ended by NULL. */
 NEVH_API const nevh_integrator *const *nevh_integrators(void);
-/* By name or alias; NULL when there is none. */
+/* Finds a scheme by name or alias; NULL if there is none. */
 NEVH_API const nevh_integrator *nevh_integrator_named(const char *name);
 
 NEVH_API const char *nevh_integrator_name(const nevh_integrator *);
@@ -117,17 +117,17 @@ NEVH_API int nevh_integrator_stages(const nevh_integrator *);
 /* Evaluations of dH/dq in one step of a long run; 0 where it depends on the
    iterations that the step needs. */
 NEVH_API int nevh_integrator_gradients(const nevh_integrator *);
-/* Of an implicit scheme: evaluations of dH/dq in one sweep of the iteration;
-   0 where it asks for values of H alone, or does not iterate. */
+/* The evaluations of dH/dq in one sweep of an implicit scheme's iteration; 0 if it
+   takes only values of H, or does not iterate. */
 NEVH_API int nevh_integrator_sweep_gradients(const nevh_integrator *);
-/* Whether with a tolerance it takes as many steps within h as that needs. */
+/* True if a tolerance makes it take as many substeps within h as it needs. */
 NEVH_API bool nevh_integrator_adaptive(const nevh_integrator *);
-/* Whether it has no fixed steps: without a tolerance its plan is refused. */
+/* True if it has no fixed steps: planning without a tolerance is refused. */
 NEVH_API bool nevh_integrator_needs_tolerance(const nevh_integrator *);
-/* Whether it takes formulas alone: terms that are functions in C are refused. */
+/* True if it requires formulas: terms that are functions in C are refused. */
 NEVH_API bool nevh_integrator_needs_formulas(const nevh_integrator *);
-/* Whether h is a nominal step, and the time that a step takes the scheme's
-   own: see nevh_stepper_time. */
+/* True if h is a nominal step, and the scheme chooses the time that a step takes:
+   see nevh_stepper_time. */
 NEVH_API bool nevh_integrator_own_time(const nevh_integrator *);
 NEVH_API nevh_claim nevh_integrator_symplectic(const nevh_integrator *);
 NEVH_API nevh_claim nevh_integrator_symmetric(const nevh_integrator *);

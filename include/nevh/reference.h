@@ -58,8 +58,7 @@ NEVH_API nevh_reference *nevh_reference_new(const nevh_system *,
                                             double t0, double t1,
                                             const double q[], const double p[]);
 
-/* What else may be said of a reference; zeros are what nevh_reference_new
-   takes. */
+/* Further options of a reference; zeros are those of nevh_reference_new. */
 typedef struct {
     const nevh_integrator *integrator; /* as there */
     const size_t *kind; /* n numbers: coordinates of one number are of one kind
@@ -83,8 +82,8 @@ NEVH_API int nevh_reference_status(const nevh_reference *);
 /* The message to that status, or ""; never NULL. */
 NEVH_API const char *nevh_reference_message(const nevh_reference *);
 
-/* What it is: "exact solution (Jacobi sn)", "gauss12 at dt = 0.005, own error
-   3e-12"; "" where there is none.  Never NULL. */
+/* A description: "exact solution (Jacobi sn)", "gauss12 at dt = 0.005, own error
+   3e-12"; "" if there is none.  Never NULL. */
 NEVH_API const char *nevh_reference_text(const nevh_reference *);
 /* Its own error in the units of state errors, the largest over its time:
    of an exact solution, what the last digits of the fitted constants do to the
@@ -113,9 +112,8 @@ typedef enum {
                              scheme of low order */
 } nevh_reference_end;
 NEVH_API nevh_reference_end nevh_reference_why(const nevh_reference *);
-/* Of chaos and of sensitive orbits: the rate of separation, per time, by least
-   squares; what a difference in the last digits had grown by.  NAN of others.
- */
+/* The rate of separation of chaotic and sensitive orbits, per time, by least
+   squares, and the growth of a difference in the last digits.  NAN of others. */
 NEVH_API double nevh_reference_exponent(const nevh_reference *);
 NEVH_API double nevh_reference_growth(const nevh_reference *);
 
@@ -144,10 +142,9 @@ NEVH_API int nevh_reference_state(nevh_reference *, double t, double q[],
 NEVH_API int nevh_reference_state_after(nevh_reference *, double elapsed,
                                         double q[], double p[]);
 
-/* What state errors of q[k] for k < n, else of p[k - n], are divided by: its
-   own range, or the widest one among the variables of its kind.  Where that is
-   0 or rounding, the largest one among all coordinates, or all momenta; 1 where
-   all are. */
+/* The divisor of state errors of q[k] for k < n, else of p[k - n]: its own range,
+   or the widest one among the variables of its kind.  If that is 0 or rounding, the
+   largest one among all coordinates, or all momenta; 1 if all are. */
 NEVH_API double nevh_reference_range(const nevh_reference *, size_t k);
 /* The difference of the largest and the smallest value of that variable over
    the time; 0 where it does not move. */
@@ -183,8 +180,8 @@ NEVH_API int nevh_state_error_observe(void *state_error, size_t step, double t,
    observed or the reference failed, or meaningless, because the run went on
    after the horizon. */
 NEVH_API double nevh_state_error_result(const nevh_state_error *);
-/* Of variable k alone, numbered as ranges are: the largest |difference| in the
-   units of that variable, so that it may be divided by either range.  INFINITY
+/* The error of variable k alone, numbered as ranges are: the largest |difference|
+   in the units of that variable, which may be divided by either range.  INFINITY
    and NAN as above. */
 NEVH_API double nevh_state_error_of(const nevh_state_error *, size_t k);
 

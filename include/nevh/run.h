@@ -118,7 +118,7 @@ typedef struct {
 } nevh_program;
 NEVH_API char *nevh_stepper_program(nevh_stepper *, const nevh_program *);
 
-/* Whether steps run as native code: H and the scheme written as one C function,
+/* True if steps run as native code: H and the scheme written as one C function,
    compiled and loaded when the stepper was made or nevh_stepper_foresee was
    called.  With NEVH_NATIVE_AUTO one orbit does not wait for the compiler: until it
    is done, steps are interpreted, with the same bits.  This function and
@@ -132,7 +132,7 @@ NEVH_API char *nevh_stepper_program(nevh_stepper *, const nevh_program *);
             ("there is no C compiler: ..."), else ""; owned by the stepper, never
             NULL */
 NEVH_API bool nevh_stepper_native(const nevh_stepper *, const char **why);
-/* Whether a compiler runs in the background and steps are not native yet.  Does not
+/* True if a compiler runs in the background and steps are not native yet.  Does not
    wait. */
 NEVH_API bool nevh_stepper_compiles(const nevh_stepper *);
 /* Raises the expected number of steps.  With NEVH_NATIVE_AUTO, a stepper that is not
@@ -149,7 +149,7 @@ NEVH_API void nevh_steppers_foresee(nevh_stepper *const[], size_t count,
    steppers that are compiled together or not at all.  Nothing is compiled.
    returns  NAN where steps cannot be compiled, or options.native forbids it */
 NEVH_API double nevh_stepper_native_saves(nevh_stepper *, double steps);
-/* Whether a scheme's steps can be compiled at all; NULL: no.  From any thread. */
+/* True if a scheme's steps can be compiled at all; false for NULL.  Thread-safe. */
 NEVH_API bool nevh_integrator_native(const nevh_integrator *);
 
 NEVH_API nevh_counts nevh_stepper_counts(const nevh_stepper *);

@@ -84,7 +84,7 @@ NEVH_API const char *nevh_scene_message(const nevh_scene *);
             apart from texts of lines, is made anew */
 NEVH_API int nevh_scene_set(nevh_scene *, const char *assignment);
 NEVH_API int nevh_scene_enable(nevh_scene *, const char *effect, bool on);
-/* Where the motion starts, instead of what [coordinates] says: "x=FORMULA",
+/* Sets the initial state, in place of that of [coordinates]: "x=FORMULA",
    "p_x=FORMULA" or "v_x=FORMULA", where formulas may use parameters; of an array
    "x[2]=...", "x[1..3]=...", "x[i = 1..3]=...", or "x=..." for all, as a list or
    one value for all.  A momentum replaces an initial velocity, and the reverse.
@@ -183,7 +183,8 @@ NEVH_API const nevh_system *nevh_scene_transform(nevh_scene *);
    returns  as nevh_scene_set; all that was borrowed is made anew */
 NEVH_API int nevh_scene_set_transform(nevh_scene *, const char *formula);
 
-/* What is shown, drawn and monitored, at a state: n coordinates and momenta.
+/* Values that are shown, drawn and monitored, at a state of n coordinates and
+   momenta.
 
    Formulas become tapes when their values are first asked for; that allocates,
    later calls do not.  v_NAME is dH/dp_NAME of the effects that are on.  A

@@ -14,7 +14,7 @@ extern "C" {
 typedef int (*nevh_section_fn)(void *data, double t, const double q[],
                                const double p[], double *value);
 
-/* What to look for; zeros are the defaults. */
+/* The definition of a section; zeros are the defaults. */
 typedef struct {
     const char *name;      /* for messages; NULL: its number */
     nevh_section_fn value; /* NULL: a stroboscopic section */
@@ -91,8 +91,8 @@ NEVH_API const char *nevh_sections_message(const nevh_sections *);
 NEVH_API int nevh_sections_observe(void *sections, size_t step, double t,
                                    const double q[], const double p[]);
 
-/* What the search has cost: the evaluations of the second stepper, none of
-   which are in the counts of the first. */
+/* The evaluations of the search, by a second stepper: they are not in the counts of
+   the first. */
 NEVH_API nevh_counts nevh_sections_counts(const nevh_sections *);
 
 #ifdef __cplusplus

@@ -65,9 +65,9 @@
 #define NEVH_UNROLL
 #endif
 
-/* What glibc's libmvec has in vector form.  Under names that GCC does not
-   know: it would join the sine and cosine of one angle to a complex
-   exponential, which has none. */
+/* The vector functions of glibc's libmvec, under names that are unknown to GCC: it
+   would replace the sine and cosine of one angle by a complex exponential, which
+   has no vector form. */
 #ifdef NEVH__VECTORS
 #ifdef __cplusplus
 extern "C" {

@@ -22,9 +22,9 @@ NEVH_API int nevh_scene_vary(nevh_scene *, const char *const lines[],
    returns  as nevh_scene_set */
 NEVH_API int nevh_scene_set_outcomes(nevh_scene *, const char *outcomes);
 
-/* How many members the scene's [ensemble] has; 0: nothing is varied. */
+/* The number of members of the scene's [ensemble]; 0: nothing is varied. */
 NEVH_API uint64_t nevh_scene_members(const nevh_scene *);
-/* Where a member starts; n each.
+/* The initial state of a member; n each.
    returns  NEVH_OK; NEVH_EINVAL where there is none of that number, or where
             parameters that are varied change more than the start; NEVH_EMAXITER
             or NEVH_EDOM, with a message, where it has
@@ -33,7 +33,7 @@ NEVH_API uint64_t nevh_scene_members(const nevh_scene *);
 NEVH_API int nevh_scene_member_start(nevh_scene *, uint64_t member, double q[],
                                      double p[]);
 
-/* How members are run; zeros are the defaults. */
+/* Options of a sweep; zeros are the defaults. */
 typedef struct {
     const nevh_integrator *integrator;
     bool transformed;              /* by the scene's transform of time */
@@ -67,20 +67,21 @@ NEVH_API int nevh_sweep_status(const nevh_sweep *);
 /* The message to that status, or ""; never NULL. */
 NEVH_API const char *nevh_sweep_message(const nevh_sweep *);
 NEVH_API uint64_t nevh_sweep_members(const nevh_sweep *);
-/* What is varied, then outcomes: "phi", "last(phi)", "energy_error". */
+/* The number of columns: varied numbers, then outcomes ("phi", "last(phi)",
+   "energy_error"). */
 NEVH_API size_t nevh_sweep_columns(const nevh_sweep *);
-/* How many of them are varied. */
+/* The number of varied columns. */
 NEVH_API size_t nevh_sweep_varied(const nevh_sweep *);
 /* NULL when k is out of range. */
 NEVH_API const char *nevh_sweep_column(const nevh_sweep *, size_t k);
-/* Whether column k is a nevh_verdict. */
+/* True if column k is a nevh_verdict. */
 NEVH_API bool nevh_sweep_is_verdict(const nevh_sweep *, size_t k);
-/* Whether column k is a value of a quantity, such as its mean: of a member that is
-   done it is NAN only where the quantity is undefined at some time.  Others may
-   have no value for other reasons, as the time of what never happens. */
+/* True if column k is a value of a quantity, such as its mean: for a member that is
+   done it is NAN only if the quantity is undefined at some time.  Other columns may
+   be NAN for other reasons, such as the time of an event that never happens. */
 NEVH_API bool nevh_sweep_is_of_values(const nevh_sweep *, size_t k);
 
-/* Whether members whose orbits stand side by side take compiled steps.
+/* True if members whose orbits stand side by side take compiled steps.
    why  out, may be NULL: what is in the way; where steps are compiled, of which
         members, if not of all; else ""; of the sweep */
 NEVH_API bool nevh_sweep_native(const nevh_sweep *, const char **why);
@@ -102,9 +103,8 @@ typedef struct {
 /* Is called with each member, by one thread at a time.  A result other than 0
    stops the sweep: orbits under way are left. */
 typedef int (*nevh_sweep_fn)(void *data, const nevh_sweep_result *);
-/* What nevh_sweep_keep fills: a record a member, as files of nevh sweep hold
-   them, of a byte (a nevh_member_status), seven bytes that are 0, and as many
-   doubles as there are columns. */
+/* The output of nevh_sweep_keep: one record a member, as in files of nevh sweep: a
+   byte (a nevh_member_status), seven bytes that are 0, and one double a column. */
 typedef struct {
     unsigned char *records; /* borrowed */
     uint64_t first, count;  /* the members that they are of: others are left */
@@ -115,8 +115,7 @@ typedef struct {
 } nevh_sweep_records;
 /* A nevh_sweep_fn; data is a nevh_sweep_records.  It never stops a sweep. */
 NEVH_API int nevh_sweep_keep(void *records, const nevh_sweep_result *);
-/* Whether a member is to be run at all; NULL: all are.  Called by several
-   threads at once. */
+/* Selects the members to run; NULL: all.  Called by several threads at once. */
 typedef bool (*nevh_wanted_fn)(void *data, uint64_t member);
 
 /* Runs members first ... first + count - 1.

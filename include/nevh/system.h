@@ -85,7 +85,7 @@ typedef struct {
                                  else found by differences */
 } nevh_term;
 
-/* What is known of the sum of the enabled terms. */
+/* Properties of the sum of the enabled terms. */
 enum nevh_trait {
     NEVH_SEPARABLE = 1,         /* H = T(t, p) + V(t, q) */
     NEVH_AUTONOMOUS = 2,        /* H does not read t */
@@ -177,7 +177,7 @@ NEVH_API bool nevh_system_friction(const nevh_system *, double rates[]);
    cost     one pass over the terms; thread-safe */
 NEVH_API unsigned nevh_system_traits(const nevh_system *);
 
-/* What values of H alone say about separability. */
+/* The separability that values of H alone show. */
 typedef struct {
     bool separable;
     const char *term; /* the term with the largest mixed part; NULL if no term

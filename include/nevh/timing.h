@@ -9,11 +9,11 @@
 extern "C" {
 #endif
 
-/* What the terms that are on do with t between two times.  Of formulas the parts
-   that read t alone are enclosed by interval arithmetic over stretches of time
-   that are halved where these parts change: so nothing is missed between two
-   samples.  Terms that are functions in C are sampled, at the state given, at
-   irregular times, and more closely where they change. */
+/* The time dependence of the enabled terms between two times.  The parts of
+   formulas that read t alone are enclosed by interval arithmetic over intervals of
+   time, which are halved where these parts change, so that nothing is missed
+   between two samples.  Terms that are functions in C are sampled, at the state
+   given, at irregular times, and more closely where they change. */
 typedef struct nevh_timing nevh_timing;
 
 /* q, p     n each: the state at which terms are sampled, and at which the
@@ -34,9 +34,9 @@ typedef struct {
     bool pole;            /* then it is no jump: H has no value there */
     const char *effect;   /* of the system */
 } nevh_time_break;
-/* How many there are, in order of time; */
+/* The number of breaks, in order of time. */
 NEVH_API size_t nevh_timing_breaks(const nevh_timing *);
-/* one of them, zeros out of range. */
+/* Break i; zeros if i is out of range. */
 NEVH_API nevh_time_break nevh_timing_break(const nevh_timing *, size_t i);
 
 /* The shortest time in which a part of a term changes by as much as it does in
@@ -48,8 +48,8 @@ NEVH_API double nevh_timing_shortest(const nevh_timing *, double *t,
                                      const char **effect);
 /* The largest angular frequency of a drive; 0 where there is none. */
 NEVH_API double nevh_timing_frequency(const nevh_timing *, const char **effect);
-/* Whether all was looked at: false where breaks are too many to be found one by
-   one, or a term is a function in C and was only sampled. */
+/* True if the search was complete: false if there are too many breaks to be found
+   one by one, or if a term is a function in C and was only sampled. */
 NEVH_API bool nevh_timing_whole(const nevh_timing *);
 
 #ifdef __cplusplus
