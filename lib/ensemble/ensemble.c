@@ -11,7 +11,7 @@ static int out_of_memory(nevh_ensemble *e) {
     return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
 }
 
-/* What an outcome asks for. */
+/* Adds the needs of an outcome to those of the ensemble. */
 static void take_outcome(nevh_ensemble *e, size_t i) {
     const nevh__outcome_type *type = e->outcomes[i].type;
     bool crosses = type->info.takes == NEVH_OUTCOME_TAKES_SECTION;
@@ -47,7 +47,7 @@ static int take_outcomes(nevh_ensemble *e) {
     return NEVH_OK;
 }
 
-/* How many side by side. */
+/* Chooses the number of orbits side by side. */
 static size_t choose_width(const nevh_ensemble *e, const nevh_options *o) {
     const nevh_integrator *scheme = e->is.integrator;
     size_t width = e->is.width ? e->is.width : WIDTH;

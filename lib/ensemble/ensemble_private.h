@@ -107,10 +107,10 @@ void nevh__ensemble_look(nevh_ensemble *);
 /* The lane ends, as it is: hands its outcomes on. */
 void nevh__ensemble_end(nevh_ensemble *, size_t lane);
 void nevh__ensemble_fail(nevh_ensemble *, size_t lane, const nevh__report *);
-/* What is kept of an outcome of a lane on its way. */
+/* The record of an outcome of a lane under way. */
 void *nevh__record_of(const nevh_ensemble *, size_t outcome, size_t lane);
-/* Of states side by side, rows of `stride`: velocities, to e->v, where they are
-   asked for; then quantities. */
+/* Evaluate velocities, to e->v, if they are needed, and quantities, at states side
+   by side in rows of `stride`. */
 void nevh__ensemble_move(nevh_ensemble *, const double t[], const double q[],
                          const double p[]);
 void nevh__ensemble_value(const nevh_ensemble *, size_t o, const double t[],
@@ -130,7 +130,7 @@ void nevh__chaotic_free(nevh__chaotic *); /* NULL is allowed */
 void nevh__chaotic_begin(nevh_ensemble *, size_t lane);
 /* An orbit whose other outcomes, in e->result, are known. */
 void nevh__chaotic_queue(nevh_ensemble *, size_t lane);
-/* Those that still wait. */
+/* Runs the orbits that still wait. */
 void nevh__chaotic_finish(nevh_ensemble *);
 /* All orbits, where no other outcome is asked for; else returns false. */
 bool nevh__chaotic_run(nevh_ensemble *);

@@ -186,7 +186,7 @@ static void step_together(nevh_ensemble *e) {
     }
 }
 
-/* What look_back does, of one lane. */
+/* look_back for one lane. */
 static void look_back_in(nevh_ensemble *e, size_t lane, double h) {
     nevh__snapshot *to = &e->ago2, *from = &e->ago1;
     size_t n = e->n, width = e->width, rows = e->stepper->rows;
@@ -212,7 +212,7 @@ static void look_back_in(nevh_ensemble *e, size_t lane, double h) {
     }
 }
 
-/* Of lanes that have taken all steps: the shorter one that ends at t_end. */
+/* Takes the shorter step to t_end in lanes that have taken all others. */
 static void step_to_end(nevh_ensemble *e) {
     double reached = e->is.t_start + e->steps * e->h;
     double rest = e->is.t_end - reached;
@@ -253,7 +253,7 @@ static bool look_and_end(nevh_ensemble *e) {
     return end_lanes(e);
 }
 
-/* Whether a lane has ended, or each step is to be looked at. */
+/* True if a lane has ended, or if each step must be observed. */
 static bool to_look(const nevh_ensemble *e) {
     bool any = e->watches;
     for (size_t lane = 0; !any && lane < e->width; lane++) {

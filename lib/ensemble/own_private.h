@@ -5,14 +5,14 @@
 
 #include <nevh/ensemble.h>
 
-/* What a member has of its own where systems differ in the constants of their
-   terms alone; see nevh__ensemble_vary. */
+/* The constants, options and system of one member, if systems differ only in the
+   constants of their terms; see nevh__ensemble_vary. */
 typedef struct {
     const nevh_system *system;
     const nevh_options *options;
     const double *const *constants; /* of the ensemble's terms: count x nc */
 } nevh__own;
-/* What the member that was asked for last has; valid until the next call. */
+/* Returns those of the member that was requested last; valid until the next call. */
 typedef const nevh__own *(*nevh__own_fn)(void *data, uint64_t member);
 /* The member cannot go beside others. */
 typedef void (*nevh__refused_fn)(void *data, uint64_t member);
@@ -25,7 +25,8 @@ typedef void (*nevh__refused_fn)(void *data, uint64_t member);
    returns  whether the ensemble can: it may have no more than orbits by kernels
             that own.c lists, their energies, and quantities that all share */
 bool nevh__ensemble_vary(nevh_ensemble *, nevh__own_fn, nevh__refused_fn);
-/* Whether an ensemble like that one, but by_lane, can. */
+/* True if such an ensemble, but by_lane, can run members with constants of their
+   own. */
 bool nevh__ensemble_may_vary(const nevh_ensemble *);
 /* And by compiled steps, where it has these. */
 bool nevh__ensemble_may_vary_compiled(const nevh_ensemble *);

@@ -79,7 +79,7 @@ static void set_sums(nevh__expression *e) {
     }
 }
 
-/* What follows from the operands. */
+/* Sets the properties that follow from the operands. */
 nevh__expression *nevh__expression_finish(nevh__resolver *r,
                                           nevh__expression *e) {
     for (size_t i = 0; i < e->n; i++) {

@@ -210,7 +210,7 @@ typedef struct {
 bool nevh__scope_fail(nevh__scope *, int status, const nevh__expression *,
                       const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-/* Whether a value is finite; an error at an expression when it is not. */
+/* True if a value is finite; otherwise sets an error at the expression. */
 bool nevh__scope_finite(nevh__scope *, double, const nevh__expression *);
 /* The number that an expression stands for that reads nothing; NaN, with an
    error, when it has none. */

@@ -56,7 +56,7 @@ size_t nevh__words_apart(const char *, const char *);
    all parentheses and brackets, or until the end. */
 size_t nevh__formula_extent(const char *text, const char *stops);
 
-/* What names mean.  Each function returns NEVH_OK or a status, with the names
+/* The table of names.  Each function returns NEVH_OK or a status, with the names
    as before; an error's column is that of the name itself.  A name is refused
    when it is taken, not a name, a function's, t, pi, or begins with p_ or v_
    (momenta and velocities). */
@@ -92,11 +92,11 @@ typedef enum {
     NEVH__VELOCITY,
     NEVH__DEFINITION
 } nevh__meaning;
-/* What a name stands for; count and first (NULL-able) as it was added. */
+/* The meaning of a name; count and first (NULL-able) as it was added. */
 nevh__meaning nevh__names_find(const nevh__names *, const char *name,
                                size_t *count, size_t *first);
 
-/* What a formula may read apart from parameters; a set. */
+/* The variables, apart from parameters, that a formula may read; a set. */
 enum {
     NEVH__READS_TIME = 1,
     NEVH__READS_Q = 2,
@@ -138,7 +138,8 @@ int nevh__tree_integer(const nevh__tree *, const nevh__names *,
 nevh__tape *nevh__tree_tape(const nevh__tree *, const nevh__names *,
                             unsigned allowed, nevh__formula_error *);
 
-/* What the terms of a system borrow: to be freed after it.  Zeros at first. */
+/* The memory that the terms of a system borrow: to be freed after it.  Zeros at
+   first. */
 typedef struct {
     nevh__tape **tapes;
     size_t count;

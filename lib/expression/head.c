@@ -35,7 +35,7 @@ static bool accept(nevh__parser *p, int kind) {
     return is;
 }
 
-/* What follows "[". */
+/* Parses the range after "[". */
 static bool parse_range(nevh__parser *p, nevh__head *head) {
     nevh__parser ahead = *p;
     nevh__formula_error ignored = {0};

@@ -189,7 +189,7 @@ static size_t terms_of(const nevh_system *s, const char *effect) {
     return count;
 }
 
-/* What nevh_system_add would choose, which takes longer to find out. */
+/* The name that nevh_system_add would choose, found in less time. */
 static char *term_name(const nevh__adder *a) {
     size_t others = terms_of(a->system, a->effect);
     return others ? nevh__text("%s %zu", a->effect, others + 1)

@@ -6,7 +6,7 @@
 
 enum { ANYTHING = NEVH__READS_TIME | NEVH__READS_STATE | NEVH__READS_V };
 
-/* Whether something may be read here that is of this kind. */
+/* Fails if a formula may not read something of this kind here. */
 static bool permit(nevh__resolver *r, const nevh__syntax_node *node,
                    unsigned reads, const char *kind) {
     unsigned excess = reads & ~r->in.allowed;

@@ -80,7 +80,7 @@ size_t nevh__names_extent(const nevh__names *names) {
     return extent;
 }
 
-/* Whether it is one name, spelt as formulas want it. */
+/* True if the text is one name, as formulas spell it. */
 static bool is_word(const char *name) {
     nevh__formula_error ignored = {0};
     nevh__scanner scanner = {name, 1, &ignored};
@@ -97,7 +97,7 @@ static bool refuse(const char *name, nevh__formula_error *error,
                               format, part, part + 2);
 }
 
-/* Whether a name may be given a meaning. */
+/* Fails if the name cannot be given a meaning. */
 static bool check_name(const nevh__names *names, const char *name,
                        nevh__formula_error *error) {
     if (!is_word(name))

@@ -26,7 +26,7 @@ void nevh__parser_init(nevh__parser *p, const char *text, nevh__pool *pool,
     nevh__parser_advance(p);
 }
 
-/* Whether a name and "=" follow: the head of a range. */
+/* True if a name and "=" follow: the head of a range. */
 static bool at_range(const nevh__parser *p) {
     nevh__formula_error ignored = {0};
     nevh__scanner ahead = p->scanner;

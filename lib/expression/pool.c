@@ -4,7 +4,8 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-/* Of the first chunk, and the most: each is twice as large as that before. */
+/* Sizes of the first chunk and of the largest; each is twice as large as the one
+   before. */
 enum { FEWEST = 512, MOST = 16 << 10 };
 
 struct nevh__chunk {

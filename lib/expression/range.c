@@ -69,7 +69,7 @@ static nevh__range join(interval value, interval slope, unsigned broken) {
 
 static const double turn = 6.283185307179586, quarter = 1.5707963267948966;
 
-/* Of a wave that is largest at `top` and each turn after it. */
+/* The range of a periodic function with maxima at `top` and each turn after it. */
 static interval wave(double (*f)(double), interval x, double top) {
     if (!(x.high - x.low < turn))
         return (interval){-1, 1};
@@ -90,7 +90,7 @@ static interval sine(interval x) {
     return wave(sin, x, quarter);
 }
 
-/* Of a function that rises, and its derivative there. */
+/* The range of a rising function, and of its derivative. */
 static nevh__range rising(nevh__tape_operation f, interval x, interval by,
                           nevh__range a) {
     interval y = {nevh__operation_value(f, x.low, 0),
@@ -220,7 +220,7 @@ static nevh__range power(nevh__range a, nevh__range b) {
                 a.broken | (pole ? NEVH__POLE : 0));
 }
 
-/* Of the larger one: where both can be it, there is a kink between. */
+/* The range of the maximum of two; a kink if either can be the larger. */
 static nevh__range larger(nevh__range a, nevh__range b) {
     bool same = a.low == b.high && b.low == a.high;
     if (a.low > b.high || same)

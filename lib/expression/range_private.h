@@ -14,7 +14,7 @@ typedef struct {
     unsigned broken;
 } nevh__range;
 
-/* Of one operation; b is ignored where there is one argument. */
+/* The range of one operation; b is ignored if it has one argument. */
 nevh__range nevh__range_apply(nevh__tape_operation, nevh__range a,
                               nevh__range b);
 

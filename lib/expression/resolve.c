@@ -61,7 +61,7 @@ static nevh__expression *resolve_call(nevh__resolver *r,
     return apply(r, node, operation);
 }
 
-/* Whether a new index may have this name. */
+/* Fails if a new index cannot have this name. */
 static bool check_bound(nevh__resolver *r, const nevh__syntax_node *node) {
     nevh__meaning meaning;
     const char *name = node->name;

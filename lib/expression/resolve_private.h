@@ -5,7 +5,7 @@
 
 #include "expression/formula_inside_private.h"
 
-/* Where a name stands. */
+/* The context of a name. */
 typedef struct {
     unsigned allowed;
     bool in_index;

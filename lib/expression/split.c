@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What stands around an expression that is split: signs, factors, and sums
-   over indices.  Each link is one more around the last. */
+/* The context of an expression that is split: signs, factors, and sums over
+   indices.  Each link adds one around the last. */
 typedef struct around {
     const struct around *outer;
     const nevh__expression_operand *left, *right; /* factors before and after */
@@ -43,7 +43,7 @@ static size_t count_loops(const around *a) {
     return count;
 }
 
-/* Whether a part is over just these loops. */
+/* True if a part is over exactly these loops. */
 static bool same_loops(const nevh__formula_part *part, const around *a) {
     size_t k = part->n_loops;
     for (; a; a = a->outer)
@@ -147,7 +147,7 @@ static bool append(nevh__parts *parts, nevh__formula_part *part,
     return true;
 }
 
-/* What is left whole becomes a summand. */
+/* Makes a summand of an expression that is not split further. */
 static bool emit(nevh__parts *parts, nevh__expression *core, const around *a) {
     nevh__summand s = {.negative = a && a->negative};
     if (parts->summands++ == NEVH__PARTS) {

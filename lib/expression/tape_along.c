@@ -71,8 +71,8 @@ static int product(sweep *s, const char *top, int d, const int of[3]) {
     return apply(s, NEVH__NEGATE, d, d);
 }
 
-/* Of y = f(a, b), or of f(a), whose b is no change.  Derivatives by two arguments have
-   one denominator. */
+/* The derivative of y = f(a, b), or of f(a), where b has none.  Derivatives by two
+   arguments have one denominator. */
 static int change(sweep *s, const nevh__operation_traits *f, dual a, dual b,
                   int y) {
     int of[3] = {a.y, b.y, y};

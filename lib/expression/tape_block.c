@@ -56,7 +56,7 @@ static void store_result(const nevh__tape *tape, const nevh__rows *r,
         h[i] = from[0];
 }
 
-/* Whether the last operation gives the result, which needs no place of its own. */
+/* True if the last operation gives the result, which then needs no slot. */
 static bool is_last(const nevh__tape *tape) {
     return tape->length && tape->result.kind == NEVH__SLOT &&
            tape->code[tape->length - 1].to == tape->result.at;

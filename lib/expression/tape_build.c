@@ -38,7 +38,7 @@ static bool same(const nevh__tape_node *x, const nevh__tape_node *y) {
            x->b == y->b && x->bits == y->bits;
 }
 
-/* Where a node is in the table, or where it would go. */
+/* The place of a node in the table, or the free place for it. */
 static size_t place(const nevh__tape_builder *b, const nevh__tape_node *n) {
     size_t mask = b->table_size - 1, i = hash(n) & mask;
     while (b->table[i] >= 0 && !same(&b->nodes[b->table[i]], n))

@@ -11,7 +11,7 @@ typedef struct {
     double re, im;
 } number;
 
-/* What is real stays real, also where the derivative is not finite. */
+/* A real argument gives a real result, even if the derivative is not finite. */
 #define CASE(kind, identifier, name, arity, value, by_a, by_b, ...)            \
     case NEVH__##identifier: {                                                 \
         double y = value, g = u.im, im = g == 0 ? 0 : by_a;                    \

@@ -13,7 +13,7 @@
    old values to keep. */
 enum { PLENTY = 24, NOWHERE = -1 };
 
-/* By node. */
+/* Properties of a node. */
 typedef struct {
     int need;  /* slots held at once */
     int place; /* operations: when; numbers: which of them; or NOWHERE */

@@ -29,7 +29,7 @@ static inline double *adjoint(const sweep *s, nevh__tape_operand o) {
                             : NULL;
 }
 
-/* What an argument has before its last use. */
+/* The adjoint of an argument before its last use. */
 static const double nothing[NEVH__TAPE_COLUMNS];
 
 /* A slot was another's before: it gets back what that one left.  Returns where
@@ -143,7 +143,7 @@ static void sweep_all(const task *job, double *scratch, size_t capacity) {
     }
 }
 
-/* Whether halving ends with a journal that fits. */
+/* True if halving ends with a journal that fits. */
 static bool is_enough(const nevh__tape *tape, size_t capacity) {
     size_t kept = NEVH__LANES * tape->slots, length = tape->length;
     for (size_t used = 2 * kept; used <= capacity; used += kept) {

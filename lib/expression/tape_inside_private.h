@@ -8,15 +8,15 @@
 
 /* False of min, mod and the others that jump, or whose derivative does. */
 bool nevh__operation_is_smooth(unsigned operation);
-/* Whether it is a function of GSL's or nevh's: compiled text would have to be
-   linked with it, and its Taylor series has no recurrence here. */
+/* True for functions of GSL or nevh: compiled text would have to be linked with
+   them, and they have no recurrence for Taylor series. */
 bool nevh__operation_is_special(unsigned operation);
 
-/* Where an operand is: among the variables of one kind, the results of
-   operations, or the numbers. */
+/* The kind of an operand: a variable of one kind, the result of an operation, or a
+   number. */
 enum { NEVH__SLOT = NEVH__VARIABLES, NEVH__NUMBER, NEVH__KINDS };
 
-/* By which variables something changes. */
+/* The variables by which something changes. */
 enum { NEVH__BY_Q = 1, NEVH__BY_P = 2, NEVH__BY_T = 4 };
 
 /* sin and cos of one argument, both of which the result depends on. */

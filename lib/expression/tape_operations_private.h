@@ -43,11 +43,11 @@ NEVH__INLINE double nevh__chain(double x, double y) {
     return undecided ? 0 : product;
 }
 #define NEVH__G(slope) nevh__chain(g, slope)
-/* Where g is a constant, so are 2 g and 3 g. */
+/* Multiples of g that are constants if g is one. */
 #define NEVH__TWICE_G(slope)  nevh__chain(2 * g, slope)
 #define NEVH__THRICE_G(slope) nevh__chain(3 * g, slope)
 
-/* Of doubles, where an includer has no other. */
+/* The defaults, for doubles. */
 #define NEVH__L(f) f
 #define NEVH__H(f) nevh__##f
 #define NEVH__S(f) nevh__##f

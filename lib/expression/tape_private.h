@@ -75,7 +75,8 @@ typedef struct {
 /* Also of NEVH__SINCOS. */
 const nevh__operation_traits *nevh__operation_of(unsigned);
 
-/* What a formula of an entry is built of: nodes, negative where that fails. */
+/* The functions that build the formula of an entry, as nodes; negative if that
+   fails. */
 typedef struct {
     void *data;
     int (*number)(void *data, double);
@@ -119,7 +120,7 @@ int nevh__tape_number(nevh__tape_builder *, double);
 int nevh__tape_variable(nevh__tape_builder *, nevh__variable, size_t k);
 /* b is ignored where there is one argument. */
 int nevh__tape_apply(nevh__tape_builder *, nevh__tape_operation, int a, int b);
-/* Whether a node is a number, and which; value may be NULL. */
+/* True if a node is a number; value, if not NULL, is then that number. */
 bool nevh__tape_is_number(const nevh__tape_builder *, int node, double *value);
 
 /* Makes the tape and frees the builder, whatever happens.
@@ -131,17 +132,16 @@ nevh__tape *nevh__tape_finish(nevh__tape_builder *, int result, int *status);
 enum { NEVH__TAPE_LIVE = 512, NEVH__TAPE_LENGTH = 1 << 20 };
 void nevh__tape_free(nevh__tape *);
 
-/* Whether the result depends on a variable, as far as the operations left
-   tell. */
+/* True if the result depends on a variable, according to the operations left. */
 bool nevh__tape_reads(const nevh__tape *, nevh__variable, size_t k);
-/* Whether an operation with kinks or jumps is one of coordinates or momenta. */
+/* True if an operation of coordinates or momenta has kinks or jumps. */
 bool nevh__tape_breaks(const nevh__tape *);
 /* One more than the largest k that the builder was asked for, read or not: what
    a term must declare as nq, np, nc. */
 size_t nevh__tape_count(const nevh__tape *, nevh__variable);
-/* Whether two tapes do the same with the same numbers. */
+/* True if two tapes have the same operations and numbers. */
 bool nevh__tape_same(const nevh__tape *, const nevh__tape *);
-/* Whether they do the same with numbers of their own, as many. */
+/* True if they have the same operations and as many numbers, which may differ. */
 bool nevh__tape_alike(const nevh__tape *, const nevh__tape *);
 /* Its numbers, each once. */
 size_t nevh__tape_numbers(const nevh__tape *, const double **);

@@ -13,7 +13,7 @@ static bool is(const nevh__tape_builder *b, int node, double x) {
            !signbit(y) == !signbit(x);
 }
 
-/* Whether a node is -z. */
+/* True if a node is -z. */
 static bool is_negated(const nevh__tape_builder *b, int node, int *z) {
     const nevh__tape_node *n = &b->nodes[node];
     if (n->kind != NEVH__SLOT || n->operation != NEVH__NEGATE)
@@ -22,7 +22,7 @@ static bool is_negated(const nevh__tape_builder *b, int node, int *z) {
     return true;
 }
 
-/* Whether a node is c*z, c being a number. */
+/* True if a node is c*z with a number c. */
 static bool is_multiple(const nevh__tape_builder *b, int node, double *c,
                         int *z) {
     const nevh__tape_node *n = &b->nodes[node];

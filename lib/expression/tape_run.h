@@ -3,7 +3,7 @@
 
    Included once for each form of libm's functions: NEVH__F(f) is that of f, and
    NEVH__RUN the name of the function.  Both are undefined at the end. */
-/* Of whole vectors; numbers stay where they are. */
+/* Applies an operation to whole vectors; numbers are not advanced. */
 #define EACH(row, value)                                                       \
     for (size_t i = 0; i < columns; i += 8) {                                  \
         const double *x = from_a + i * step_a, *z = from_b + i * step_b;       \

@@ -20,8 +20,8 @@ static const double certain_jump = 1e-6; /* of the range */
 
 typedef nevh__time_stretch stretch;
 
-/* Of a part, by its range.  One without bounds is a pole, or is within a function
-   that has bounds. */
+/* The relative rate of change of a part, from its range.  A part without bounds is
+   a pole, or is within a function that has bounds. */
 static double rate_of(const nevh__range *r, double range, double length) {
     double most = fmax(fabs(r->down), fabs(r->up));
     if (!(range > 0) || !isfinite(range) || isnan(most))
@@ -39,7 +39,7 @@ static void take_frequency(nevh_timing *m, const stretch *c, size_t i) {
     }
 }
 
-/* What the parts do over a stretch. */
+/* Evaluates the parts over an interval. */
 static stretch look(nevh_timing *m, double low, double high) {
     nevh__time_parts *s = &m->parts;
     stretch c = {.low = low, .high = high};
@@ -83,7 +83,7 @@ static void values_at(nevh_timing *m, double t, double to[]) {
         to[i] = m->parts.range[i].low;
 }
 
-/* Whether a term differs on either side of a break; out: whose. */
+/* True if a term differs on either side of a break; effect: out. */
 static bool jumps(nevh_timing *m, double before, double after, size_t *effect) {
     const nevh__time_parts *s = &m->parts;
     double most = certain_jump;
@@ -219,7 +219,8 @@ static void end_halving(nevh_timing *m, stretch *c) {
     c->rate = 0;
 }
 
-/* Where changes are fast against the length of a stretch. */
+/* Halves intervals over which terms change fast, compared with the interval's
+   length. */
 static void halve(nevh_timing *m) {
     for (size_t i = m->cells; i-- > 0;)
         sink(m, i);
@@ -287,8 +288,8 @@ static void find_reach(nevh_timing *m) {
     }
 }
 
-/* Whether the fast change there, with that of its neighbours, is a good part of
-   a range: where a root begins it is not. */
+/* True if the fast change there, with that of its neighbours, is a good part of a
+   range: at the end of the domain of a root it is not. */
 static bool is_large(const nevh_timing *m, size_t i) {
     static const double good = 0.05, alike = 0.5;
     const stretch *c = m->cell;
@@ -300,7 +301,7 @@ static bool is_large(const nevh_timing *m, size_t i) {
     return change >= good;
 }
 
-/* Whether it is a pole that makes the change fast. */
+/* True if the change is fast because of a pole. */
 static bool is_at_pole(const nevh_timing *m, const stretch *c) {
     static const double near = 8;
     bool at = false;

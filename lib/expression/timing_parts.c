@@ -97,8 +97,8 @@ static int pure_part(parts *m, int node) {
     return nevh__tape_apply(m->graph, NEVH__ADD, a, b);
 }
 
-/* What is as narrow as the operation, which reads q or p, too: exp(f(t) + g(q))
-   as exp(f(t)), g(q)/f(t) as 1/f(t). */
+/* Marks a part that is as narrow as an operation which also reads q or p: exp(f(t)
+   + g(q)) as exp(f(t)), g(q)/f(t) as 1/f(t). */
 static void mark_like(parts *m, nevh__tape_operation f, slot a, slot b,
                       size_t effect) {
     int x = -1;
@@ -224,7 +224,7 @@ static double sample(const parts *m, const struct nevh__time_sampled *s,
     return term->value(t, q, p, c, term->params);
 }
 
-/* Of values at irregular times: they are not all that there are. */
+/* The range of values at irregular times, which may miss others. */
 static nevh__range sampled_range(const parts *m,
                                  const struct nevh__time_sampled *s, double low,
                                  double high) {

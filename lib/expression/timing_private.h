@@ -5,8 +5,8 @@
 
 #include <nevh/timing.h>
 
-/* How far from t a series may reach so that it sees what changes before it
-   comes there; no break in between counts.  INFINITY where nothing changes. */
+/* The distance from t that a series may reach without missing a change, breaks
+   between not counted.  INFINITY if nothing changes. */
 double nevh__timing_reach(const nevh_timing *, double t);
 /* The next break after t, towards either side; NULL: there is none. */
 const nevh_time_break *nevh__timing_next(const nevh_timing *, double t,
@@ -14,8 +14,8 @@ const nevh_time_break *nevh__timing_next(const nevh_timing *, double t,
 /* The next time at which a stretch ends over which terms change at one rate;
    infinite: there is none. */
 double nevh__timing_edge(const nevh_timing *, double t, bool forward);
-/* Whether a step between two times passes over a change of a term, which takes
-   less than half of it. */
+/* True if a step between two times passes over a change of a term that takes less
+   than half of the step. */
 bool nevh__timing_is_fast(const nevh_timing *, double from, double to);
 
 #endif

@@ -98,7 +98,7 @@ static void scan_word(nevh__scanner *s, nevh__token *token) {
                        "this name is longer than %d bytes", NEVH__NAME_LENGTH);
 }
 
-/* What to write instead of a character that has no meaning here. */
+/* The correction to suggest for a character without a meaning. */
 static const char *instead(uint32_t code) {
     static const struct {
         uint32_t code;

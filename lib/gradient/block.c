@@ -152,7 +152,7 @@ static void describe(const nevh_field *f, const nevh__planned *term,
         snprintf(text + at, size - at, ", ...");
 }
 
-/* Where squares and products of variables soon are beyond numbers. */
+/* True if squares and products of the variables would soon overflow. */
 static bool is_beyond(const nevh_field *f, const nevh__planned *term,
                       const nevh__block *b, size_t column) {
     const double vast = 1e100;
@@ -188,7 +188,7 @@ int nevh__block_fail(nevh_field *f, const nevh__planned *term,
         isnan(value) ? fabs(value) : value, where);
 }
 
-/* Whether all are finite: x - x is 0 then, and NaN otherwise. */
+/* True if all are finite: x - x is then 0, else NaN. */
 static bool all_finite(const double x[], size_t n) {
     double sum = 0;
     for (size_t i = 0; i < n; i++)

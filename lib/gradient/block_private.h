@@ -23,8 +23,8 @@ enum {
     NEVH__BLOCK_SIZE = 16384
 };
 
-/* Where the states are, and which of them a block takes.  The first eight are
-   given; nevh__block_next sets the rest. */
+/* The states, and the part of them in a block.  The first eight members are given;
+   nevh__block_next sets the rest. */
 typedef struct {
     size_t width; /* of q and p: the distance between their rows */
     size_t until; /* lanes to be done */
@@ -107,7 +107,8 @@ bool nevh__add_slopes(const nevh_gradient *, size_t apart, size_t lanes,
 int nevh__central_fail(nevh_field *, nevh__planned *, const nevh__block *,
                        size_t lane, size_t instance, size_t k);
 
-/* What gives a term's derivatives: under `portable` a formula's by libm. */
+/* The function of a term's derivatives: under `portable`, that of a formula is by
+   libm. */
 nevh_block_gradient_fn nevh__exact_gradient(const nevh_field *,
                                             const nevh_term *);
 

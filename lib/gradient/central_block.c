@@ -66,7 +66,7 @@ bool nevh__add_slopes(const nevh_gradient *g, size_t apart, size_t lanes,
     return add_slopes(g, apart, lanes, x, h, out);
 }
 
-/* How far a column is from the orbit, and by which variable. */
+/* The distance of a column from the orbit, and the variable in which it is largest. */
 static double reach_of(const nevh_field *f, const nevh__planned *term,
                        const nevh__block *b, size_t column, size_t *variable) {
     size_t lane = b->lane + column % b->lanes;
@@ -196,8 +196,8 @@ static void perturb_one(double *row, size_t pairs, size_t apart, double delta,
     }
 }
 
-/* Where there are many instances the way from group to group has to be short;
-   bit for bit what difference_lanes gives. */
+/* As difference_lanes, bit for bit, with a shorter loop over groups for terms of
+   many instances. */
 static int difference_one(nevh_field *f, nevh__planned *term, nevh__block *b,
                           selection s, const nevh__places *x) {
     const nevh_gradient *g = weights_of(f, s.pairs);

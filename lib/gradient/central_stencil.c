@@ -97,8 +97,7 @@ NEVH__INLINE void add_slope(const nevh_gradient *method, size_t offsets,
     }
 }
 
-/* Where the slope of a variable goes, from a lane on, and whether it is added
-   there. */
+/* The address of a variable's derivative, from a lane on; adds: it is added there. */
 NEVH__INLINE double *place_of(const nevh__term_part *part,
                               const nevh__places *at,
                               const nevh__stencil_slope *x, size_t lane,
@@ -134,7 +133,7 @@ NEVH__INLINE bool add_vectors(const nevh_field *f, const nevh__term_part *part,
     return sum == 0;
 }
 
-/* Of a few states, one after the other: as nevh__add_slopes. */
+/* For a few states, one after the other, as nevh__add_slopes. */
 NEVH__INLINE bool add_few(const nevh_gradient *method, size_t lanes, bool adds,
                           const double *x, const double *h, double *out) {
     double bad = 0;
@@ -153,7 +152,7 @@ static bool add_many(const nevh_gradient *method, size_t lanes, bool adds,
     return nevh__add_slopes(method, lanes, lanes, x, h, out);
 }
 
-/* Of any number of states. */
+/* For any number of states. */
 NEVH__INLINE bool add_lanes(const nevh_field *f, const nevh__term_part *part,
                             const nevh__places *at, size_t lane) {
     const nevh__stencil *s = part->stencil;

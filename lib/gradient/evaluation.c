@@ -29,7 +29,7 @@ static const nevh__evaluator *const evaluators[] = {
     &nevh__exact_point, &nevh__exact_block, &nevh__central_stencil,
     &term_by_term};
 
-/* Where no other term reads momenta. */
+/* The inverse masses, if no other term reads momenta. */
 static const double *find_masses(const nevh__evaluation *e) {
     const nevh__term_part *x = e->terms;
     const nevh_term *decl = &x->term->term->decl;

@@ -117,7 +117,7 @@ void nevh__constants_free(struct nevh__constants *);
 size_t nevh__stencil_points(const nevh__stencil *);
 size_t nevh__stencil_instance(const nevh__stencil *, size_t point);
 
-/* Those of the field itself: nevh_field_gradient at one state. */
+/* The evaluation of the field itself: nevh_field_gradient at one state. */
 bool nevh__single_plan(nevh_field *); /* false: memory is out */
 void nevh__single_free(struct nevh__single *);
 

@@ -12,7 +12,7 @@
    of them cost more than to gather one vector of instances. */
 enum { MOST_BROADCAST = 2, MOST_ROWS = 8 };
 
-/* Whether the rows of all variables stand in the state as in a block. */
+/* True if the rows of all variables are consecutive in the state, as in a block. */
 static bool stands(const nevh__planned *term) {
     const nevh_term *decl = &term->term->decl;
     return (!term->nq || nevh__contiguous(decl->q, term->nq, decl->count)) &&
@@ -54,9 +54,9 @@ static uint64_t rows_of(const nevh__evaluation *e, size_t first, size_t count) {
                                                : nevh__row_bits(first, count);
 }
 
-/* Where a half of a part's slopes goes: to its place if nothing is there yet,
-   else beside it, to be added.  False: something is there in some of its rows
-   alone. */
+/* Chooses where a part writes one half of the gradient: in place if no part has
+   written there, else beside it, to be added.  False if parts have written only
+   some of its rows. */
 static bool direct(const nevh__evaluation *e, size_t first, size_t size,
                    uint64_t *there, double *half, double *beside,
                    double **written, double **sum) {

@@ -9,7 +9,7 @@
 #include <nevh/body.h>
 #include <string.h>
 
-/* What is not evaluated in one block has no use for maps. */
+/* Terms that do not fit into one block need no maps. */
 static bool plan_term(const nevh_field *f, nevh__planned *term) {
     const nevh_term *decl = &term->term->decl;
     size_t constants = decl->nc * f->capacity;

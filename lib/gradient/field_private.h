@@ -24,8 +24,8 @@ typedef struct {
     size_t begin, end; /* in vars */
 } nevh__pass;
 
-/* Where states are and their gradient goes, n x width each.  Either half of the
-   gradient may be NULL. */
+/* The addresses of states and of their gradient, n x width each.  Either half of
+   the gradient may be NULL. */
 typedef struct {
     size_t width; /* the distance between rows */
     const double *t, *q, *p;
@@ -96,8 +96,8 @@ struct nevh_field {
     double *one;       /* one state of a scalar or complex term */
     double *jacobian;  /* 6n, made by nevh_gsl_system */
     uint64_t gradients;
-    /* Of a half of the gradient: the first term with a share in it, if that has
-       all of it; else NULL. */
+    /* The first term with a share in one half of the gradient, if it has all of it;
+       else NULL. */
     const nevh__planned *whole_q, *whole_p;
     bool starved;    /* memory was out when an evaluation was planned */
     bool broadcasts; /* one state may as well be repeated over a vector */
@@ -120,7 +120,7 @@ static inline size_t nevh__index(const nevh__planned *term, size_t instance,
                         : decl->p[instance * term->np + k - term->nq];
 }
 
-/* Whether a term that has all of a half writes it, and others add. */
+/* True if a term that has all of a half writes it, so that the others add. */
 static inline bool nevh__writes(const nevh_field *f, const nevh__planned *whole,
                                 size_t width) {
     if (!whole || f->gradient != nevh_exact)
@@ -132,7 +132,7 @@ static inline bool nevh__writes(const nevh_field *f, const nevh__planned *whole,
 static inline size_t nevh__part_of(const nevh__places *at) {
     return at->dh_dq && at->dh_dp ? 2 : at->dh_dp ? 1 : 0;
 }
-/* Whether a term has a part in what is asked for. */
+/* True if a term has a part in what is requested. */
 static inline bool nevh__wanted(const nevh__places *at,
                                 const nevh__planned *term) {
     return (at->dh_dq && term->nq) || (at->dh_dp && term->np);
@@ -190,15 +190,14 @@ int nevh__central_blocks(nevh_field *, nevh__planned *, const nevh__places *);
 int nevh__gradient_exact(nevh_field *, nevh__planned *, const nevh__places *);
 int nevh__gradient_complex(nevh_field *, nevh__planned *, const nevh__places *);
 
-/* Of all terms, one after another, at any places. */
+/* Evaluates all terms, one after another, at any addresses. */
 int nevh__field_terms(nevh_field *, const nevh__places *);
-/* What differences, and exact gradients, need at any places; false when memory
-   is out. */
+/* Plans differences, and exact gradients, at any addresses; false if memory is out. */
 bool nevh__central_stencil_plan(nevh_field *);
 void nevh__central_stencil_clear(nevh__planned *);
 void nevh__central_stencils_clear(nevh_field *); /* those of all terms */
 bool nevh__exact_gather_plan(nevh_field *);
-/* Whether one state may as well be repeated over a vector. */
+/* True if one state may be repeated over a vector at no extra cost. */
 bool nevh__exact_block_broadcasts(const nevh_field *);
 
 /* nevh_field_gradient, of which `used` lanes count. */
@@ -207,9 +206,9 @@ int nevh__field_gradient_padded(nevh_field *, size_t width, size_t used,
                                 const double p[], double dh_dq[],
                                 double dh_dp[]);
 
-/* How far rounding in the values of H may move dH/dq and dH/dp at one state
-   (width 1): the sum of epsilon |h| / delta over what reads each variable, n
-   each.  Zeros where gradients are exact. */
+/* The noise of dH/dq and dH/dp from rounding in the values of H at one state (width
+   1): the sum of epsilon |h| / delta over all that reads each variable, n each.
+   Zeros if gradients are exact. */
 int nevh__field_noise(nevh_field *, double t, const double q[],
                       const double p[], double noise_q[], double noise_p[]);
 
@@ -217,7 +216,7 @@ int nevh__field_noise(nevh_field *, double t, const double q[],
 int nevh__field_moving_effects(nevh_field *, double t, const double q[],
                                const double p[], double h[]);
 
-/* Of each term of the field, likewise. */
+/* The same for each term of the field. */
 int nevh__field_moving_terms(nevh_field *, double t, const double q[],
                              const double p[], double h[]);
 
@@ -238,13 +237,13 @@ int nevh__field_lengths(nevh_field *, const nevh_options *, double length[]);
    at, which may cost more than all other planning.  What it evaluates is not
    counted.  Returns a status, recorded in the field. */
 int nevh__field_find_scale(nevh_field *, const nevh_options *);
-/* What planning evaluates is not counted, and its failures are forgotten where the
-   status is NEVH_OK; returns the status. */
+/* Takes the evaluations of planning out of the counts, and clears its failures if
+   the status is NEVH_OK; returns the status. */
 int nevh__field_forget(nevh_field *, int status);
 
-/* How H varies with each variable, 2n: what it varies by within those lengths,
-   over their squares.  Where H is quadratic that is nearly its second
-   derivative, however much of H others make up. */
+/* The curvature of H in each variable, 2n: the change of H within the variable's
+   length, over the square of the length.  For a quadratic H this is nearly the
+   second derivative, however large the other terms are. */
 int nevh__field_curvatures(nevh_field *, const nevh_options *,
                            double curvature[]);
 
@@ -264,7 +263,7 @@ bool nevh__follow_orbit(nevh_field *, double t, const double q[],
 extern const nevh_gradient nevh__no_gradient;
 /* Exact where all terms that are on have that, else differences of order 6. */
 const nevh_gradient *nevh__best_gradient(const nevh_system *);
-/* How dH/dt of a term is differenced; time.c. */
+/* The difference method for dH/dt of a term; time.c. */
 typedef struct {
     const nevh_gradient *method; /* NULL: the term does not read t */
     double delta;
@@ -279,7 +278,7 @@ int nevh__field_time_slope(nevh_field *, size_t term, const nevh__time_step *,
 
 /* NEVH_OK, or why the field cannot be used (again). */
 int nevh__field_ready(nevh_field *);
-/* Whether that is so without a look at what went wrong last. */
+/* True if the field is planned, is not stale and has not failed. */
 static inline bool nevh__field_at_hand(const nevh_field *f) {
     return f->planned && !f->report.status &&
            f->system->revision == f->revision;

@@ -9,8 +9,8 @@
 
 /* A length is where this part of a variation is not that of a quadratic. */
 static const double not_quadratic = 0.2;
-/* Of the kinetic energy, or of what else varies there: less is a force that acts
-   elsewhere, or a small one, and says nothing of the momenta. */
+/* Relative to the kinetic energy, or to other terms that vary: a smaller change
+   comes from a distant or weak force, and has no information on the momenta. */
 static const double out_of_reach = 0x1p-26;
 enum { FARTHEST = 400, LEAP = 8 }; /* powers of two from the first guess */
 enum { FEWEST_AHEAD = 2, MOST_AHEAD = 30 }; /* distances at once */
@@ -75,8 +75,8 @@ double nevh__sample_rounding(const nevh__step_selection *e,
         decl->nc ? decl->c + instance * decl->nc : NULL, decl->params);
 }
 
-/* How h varies within one distance: as a whole, what a quadratic through the
-   half distance does not explain of it, and what may be rounding. */
+/* The variation of h within one distance: as a whole, the part that a quadratic
+   through the half distance does not explain, and the part that may be rounding. */
 typedef struct {
     double whole, rest, rounding;
 } variation;
@@ -155,8 +155,8 @@ static bool alike(const variation *a, const variation *b) {
            noise < 0.1;
 }
 
-/* What is seen is rounding: far from where cos(x/1e-30) is resolved, as its argument
-   is rounded.  Nearer there is less of that, unlike of noise. */
+/* True if the variation is rounding of an argument, as of cos(x/1e-30) far from
+   where it is resolved.  Unlike noise, it is smaller at shorter distances. */
 static bool is_lost(const nevh__step_selection *e, const nevh__planned *term,
                     size_t instance, size_t k, double distance,
                     const variation *v) {
@@ -199,7 +199,8 @@ static bool leap_down(const nevh__step_selection *e, const nevh__planned *term,
     return !too_far(&v);
 }
 
-/* Of eps*x^4 with eps = 0: it varies nowhere, until x^4 overflows. */
+/* True for a term such as eps*x^4 with eps = 0: it does not vary until x^4
+   overflows. */
 static bool is_overflow(const variation *v, double times) {
     bool finite = isfinite(v->rest) && isfinite(v->whole);
     return !finite && times > no_edge;
@@ -409,7 +410,7 @@ static void find_over_lanes(nevh__step_selection *e, double *energy) {
     e->at = 0;
 }
 
-/* What an instance adds to the changes of H, up and down by the length of each
+/* Adds the changes of H by one instance, up and down by the length of each
    variable. */
 static void add_changes(const nevh__step_selection *e,
                         const nevh__planned *term, size_t instance,

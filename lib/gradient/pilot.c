@@ -68,8 +68,8 @@ double nevh__first_step(const nevh__step_selection *e, const void *system,
     return isfinite(step) ? step : 0;
 }
 
-/* Whether a variable has left the neighbourhood of the start, as it may where
-   H is not bounded below. */
+/* True if a variable has left the neighbourhood of the start, which happens if H is
+   not bounded below. */
 static bool runs_away(const nevh__step_selection *e, const double y[]) {
     size_t n = e->field->n;
     for (size_t i = 0; i < 2 * n; i++) {

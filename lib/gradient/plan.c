@@ -135,7 +135,7 @@ static void take_given(nevh_field *f, nevh__planned *term,
     }
 }
 
-/* Whether order 2 is enough for variable k of every instance. */
+/* True if order 2 is enough for variable k of every instance. */
 static bool quadratic(const nevh__planned *term, size_t k) {
     for (size_t row = 0; row < nevh__step_rows(term); row++)
         if (!term->steps[row * term->nv + k].quadratic)

@@ -72,7 +72,7 @@ typedef struct {
     double *friction; /* n rates; NULL: there is none */
 } law;
 
-/* By the terms' own gradients, or else those of the field. */
+/* The flow by the terms' own gradients, or else that of the field. */
 static int motion(double t, const double y[], double dydt[], void *of) {
     const law *m = of;
     nevh_field *f = m->field;

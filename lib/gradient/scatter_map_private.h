@@ -31,8 +31,8 @@ void nevh__gather(const nevh__scatter_map *, size_t width, size_t stride,
                   const double from[], double to[]);
 bool nevh__scatter(const nevh__scatter_map *, size_t width, size_t stride,
                    const double from[], double out[]);
-/* Whether variable k of instance i is number i + k: one row after another, in
-   a block of one instance or of one variable. */
+/* True if variable k of instance i is number i + k: one row after another, in a
+   block of one instance or of one variable. */
 bool nevh__contiguous(const size_t index[], size_t variables, size_t count);
 
 #endif

@@ -20,7 +20,7 @@ size_t nevh__stencil_instance(const nevh__stencil *s, size_t point) {
     return s->instance[point];
 }
 
-/* What a pass of a term has of the halves asked for. */
+/* The range of a pass in the requested halves of the gradient. */
 typedef struct {
     size_t begin, end;
 } range;
@@ -105,7 +105,7 @@ static bool plan_part(const nevh_field *f, nevh__planned *term, size_t part) {
     return true;
 }
 
-/* Whether the slopes of a half are one for each row. */
+/* True if the stencil has one derivative for each row of a half. */
 static bool covers(const nevh_field *f, const nevh__stencil *s) {
     bool there[NEVH__MOST_SLOPES] = {false};
     if (!s || s->slopes != f->n)

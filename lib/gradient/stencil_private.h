@@ -18,7 +18,7 @@ typedef struct {
     const nevh_gradient *method;
 } nevh__stencil_slope;
 
-/* What dH/dq, dH/dp or both of a term take. */
+/* The points and weights for dH/dq, dH/dp or both of a term. */
 struct nevh__stencil {
     size_t points, padded;
     double *shift;     /* nv x padded */

@@ -41,7 +41,7 @@ static inline double larger(double a, double b) {
     return b > a ? b : a;
 }
 
-/* Of `count` steps, whose values stand `count` apart. */
+/* Differences with `count` steps, whose values are `count` apart. */
 static void difference(const nevh_gradient *g, size_t count, const double *x,
                        const double *h, double *slope, double *noise) {
     memset(slope, 0, count * sizeof *slope);
@@ -139,9 +139,9 @@ static int best_level(const estimate levels[LEVELS], int order) {
     return best;
 }
 
-/* Of a smooth H, also near a singularity, the error of order 2 falls by no more
-   than some 16 where steps are halved twice.  Where a kink comes out of their
-   reach it falls at once.  Then the error is that of steps within reach. */
+/* For a smooth H, also near a singularity, the error of order 2 falls by at most
+   about 16 when steps are halved twice.  It falls at once when a kink leaves the
+   reach of the steps; the error is then that of steps which reach the kink. */
 static double kink(const estimate two[LEVELS]) {
     for (int i = -2 - LOWEST; i >= 2; i--) {
         double far = two[i].truncation, near = two[i - 2].truncation;

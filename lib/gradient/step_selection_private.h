@@ -21,9 +21,8 @@
 
 #include "gradient/field_private.h"
 
-/* Of a term with many instances, or an instance with many variables, about
-   this many are looked at; the others take the step of the last one before
-   them that was. */
+/* The number of instances, or of variables of an instance, that are probed in large
+   terms; each of the others takes the step of the last one probed before it. */
 enum { NEVH__PROBED = 64 };
 
 /* States, n doubles of q and of p each. */
@@ -34,7 +33,7 @@ typedef struct {
     double *q, *p; /* (most + 1) x n: the last one is nevh__verify's */
 } nevh__samples;
 
-/* What the plan knows while it looks around. */
+/* The state of planning. */
 typedef struct {
     nevh_field *field;
     const nevh_options *options;
@@ -61,8 +60,8 @@ size_t nevh__probed(const nevh__planned *, size_t k);
 void nevh__sample_line(const nevh__step_selection *, const nevh__planned *,
                        size_t instance, size_t k, size_t at, size_t count,
                        const double move[], double x[], double h[]);
-/* How far rounding may move the value of an instance there: of a formula, that
-   of all its operations; of other code, that of its value h. */
+/* The largest effect of rounding on an instance's value at a sample: for a formula,
+   the rounding of all its operations; for other code, that of its value h. */
 double nevh__sample_rounding(const nevh__step_selection *,
                              const nevh__planned *, size_t instance, size_t k,
                              size_t at, double move, double h);
@@ -84,9 +83,8 @@ bool nevh__sizes_from_rest(const nevh__step_selection *, double sizes[]);
 /* From now on they are those of the field, of one orbit; false when memory is
    out. */
 bool nevh__keep_lengths(const nevh__step_selection *);
-/* Of each variable, the largest over samples of what H varies by within its
-   length, over the square of that; 2n, zeros at first.
-   changes: room for 4n. */
+/* For each variable, the largest over samples of the change of H within its length,
+   over the length squared; 2n, zeros at first.  changes: room for 4n. */
 void nevh__find_curvatures(nevh__step_selection *, double changes[],
                            double curvature[]);
 /* Steps that will do for a pilot, from the lengths. */
@@ -98,8 +96,8 @@ void nevh__set_crude_steps(nevh__step_selection *);
    dydt     out, 2n */
 double nevh__first_step(const nevh__step_selection *, const void *ode, double t,
                         const double y[], double dydt[]);
-/* Whether the first `count` samples of the pilot suffice for scales: those of the
-   second half doubled no size that is below its length. */
+/* True if the first `count` samples of the pilot suffice for scales: the second
+   half of them doubled no size that is below its length. */
 bool nevh__sizes_settled(const nevh__step_selection *, size_t count);
 /* Adds samples; false when memory is out. */
 bool nevh__find_samples(nevh__step_selection *);

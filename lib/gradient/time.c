@@ -59,7 +59,7 @@ static nevh__block copies_of(const slope_task *task, size_t copies) {
     return b;
 }
 
-/* What the term itself says of it; false where that is not finite. */
+/* Adds the term's own derivative; false if it is not finite. */
 static bool add_exact(const slope_task *task) {
     nevh_field *f = task->field;
     const nevh_term *term = &task->term->term->decl;
@@ -86,7 +86,7 @@ static int add_central(const slope_task *task) {
     return status;
 }
 
-/* Of order 4, from t on to one side; false where a value is not finite. */
+/* Adds a one-sided difference of order 4 from t; false if a value is not finite. */
 static bool add_sided(const slope_task *task, double side) {
     static const double weights[] = {-25. / 12, 4, -3, 4. / 3, -0.25};
     enum { POINTS = sizeof weights / sizeof *weights };

@@ -136,8 +136,8 @@ static void displace(const check *c, size_t at, size_t to, double part,
     }
 }
 
-/* Whether states near by deviate, too, by about as much; or hardly at all, so
-   that it is this state alone. */
+/* True if nearby states deviate by about as much, or hardly at all, so that only
+   this state is wrong. */
 static bool is_error(const check *c, size_t k, size_t at, double deviation) {
     size_t to = c->selection->samples.most, count = 1;
     double sum = 1, squares = 1, most = 0; /* parts of that deviation */

@@ -81,7 +81,7 @@ static void find_scales(nevh__stage_solver *s) {
     }
 }
 
-/* What becomes of a lane whose sweep is out[row*stride]. */
+/* Updates the state of a lane whose sweep is out[row*stride]. */
 static nevh__stage_state proceed(nevh__stage_solver *s, size_t lane,
                                  size_t stride, const double out[]) {
     nevh__stage_progress made =
@@ -141,7 +141,7 @@ static int sweep_alone(nevh__stage_solver *s, size_t lanes[], size_t count,
     return status;
 }
 
-/* Whether the lane is held by Newton's iteration, which then solves it. */
+/* True if the lane is left to Newton's iteration, which then solves it. */
 static bool held(nevh__stage_solver *s, size_t lane, int *status) {
     double *hold = s->newton ? s->problem->hold : NULL;
     if (!hold || !(hold[lane] > 0))

@@ -21,9 +21,9 @@
 
 typedef struct nevh__stage_solver nevh__stage_solver;
 
-/* How states of stages follow from slopes, for Newton's iteration:
-   Q_i = q + h sum_j a_q[j*stages + i] (slope of q at j), P_i with a_p.  In the
-   partitioned form G takes the slopes of q from P_j. */
+/* The dependence of stage states on derivatives, for Newton's iteration: Q_i = q +
+   h sum_j a_q[j*stages + i] (derivative of q at j), P_i with a_p.  In the
+   partitioned form G takes the derivatives of q from P_j. */
 typedef struct {
     size_t stages;
     bool partitioned;
@@ -41,7 +41,7 @@ typedef struct {
     int (*sweep)(void *data, nevh__stage_progress made[]);
     /* So many sweeps of a lane were made: counts what they evaluated. */
     void (*count)(void *data, size_t sweeps);
-    /* Of a lane of the group: takes its x. */
+    /* Takes the x of a lane of the group. */
     void (*fetch)(void *data, size_t lane);
     /* So many lanes of a group, or fewer, had better leave it: what follows is
        of this lane alone, which goes on where it stands.  few 0: none does. */
@@ -66,8 +66,8 @@ typedef struct {
        at once, from the step before and for the next.  To be kept in memory,
        but not before the step is certain.  NULL: nothing is known. */
     double *hold;
-    /* How far rounding in H may move each of a lane's 2n slopes; NULL: as far
-       as it moves the field's gradient. */
+    /* The noise that rounding in H adds to each of a lane's 2n derivatives; NULL:
+       as much as to the field's gradient. */
     int (*noise)(void *data, size_t lane, double noise[]);
 } nevh__stage_problem;
 
@@ -110,11 +110,11 @@ static inline double nevh__stage_unit(const nevh__stage_solver *s, size_t row,
     return s->scale[k * s->work->width + lane] / h;
 }
 
-/* Of a lane of which nothing is known. */
+/* The state of a lane before its first sweep. */
 extern const nevh__stage_lane nevh__stage_fresh;
 /* Forgets what is known of a lane's iteration, and its smallest changes. */
 void nevh__stage_begin(nevh__stage_solver *, size_t lane);
-/* Whether a change, in units of scale, is no more than rounding. */
+/* True if a change, in units of scale, is no more than rounding. */
 bool nevh__stage_small(nevh__stage_solver *, size_t lane, double change);
 
 /* To s->noise, 2n: what noise of differences, at the start of the step, adds to

@@ -42,8 +42,8 @@ static double worst_noise(const nevh_work *w, const double noise[],
     return most;
 }
 
-/* What noise makes of a step of one lane, in units of scale: the largest over
-   all variables, since each draws the others along. */
+/* The effect of noise on a step of one lane, in units of scale: the largest over
+   all variables, since each affects the others. */
 static double noise_level(nevh__stage_solver *s, size_t lane) {
     const nevh_work *w = s->work;
     const nevh__stage_problem *e = s->problem;

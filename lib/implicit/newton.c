@@ -245,8 +245,8 @@ static void find_noise(nevh__stage_solver *s, size_t lane) {
     }
 }
 
-/* What such noise, of either sign, makes of the unknowns: no change within that
-   can be told from rounding. */
+/* True if the change is within the effect of such noise, of either sign, on the
+   unknowns: it cannot be told from rounding. */
 static bool no_more_than_noise(nevh__stage_solver *s, size_t lane,
                                double change) {
     struct nevh__newton *m = s->newton;

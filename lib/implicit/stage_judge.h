@@ -30,12 +30,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* What is not worth a look above; what hardly falls. */
+/* Changes above this are not noise; a ratio of changes above this is hardly a
+   decrease. */
 #define NEVH__STAGE_MAYBE_NOISE 1e-4
 #define NEVH__STAGE_HARDLY_LESS 0.9
 
-/* What ends an iteration: stalls; and sweeps on end that contract too little, by
-   this in two sweeps, in systems of so many unknowns and in larger ones. */
+/* The ends of an iteration: stalls; and consecutive sweeps that contract by less
+   than this in two sweeps, in systems of so many unknowns and in larger ones. */
 enum {
     NEVH__STAGE_STALLS = 8,
     NEVH__STAGE_SLOW = 4,
@@ -100,7 +101,7 @@ nevh__stage_judge_sweep(const nevh__stage_judged *x, nevh__stage_lane *l,
     return l->stalls < NEVH__STAGE_STALLS ? NEVH__GO_ON : NEVH__STUCK;
 }
 
-/* Whether fixed-point iteration would take too long; `before`: the change two
+/* True if fixed-point iteration would take too long; `before`: the change two
    sweeps ago. */
 NEVH__INLINE bool nevh__stage_too_slow(const nevh__stage_judged *x,
                                        nevh__stage_lane *l, double before) {

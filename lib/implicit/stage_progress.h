@@ -26,7 +26,7 @@ typedef struct {
 
 typedef enum { NEVH__GO_ON, NEVH__DONE, NEVH__STUCK } nevh__stage_state;
 
-/* What is known of the iteration of one lane. */
+/* The progress of the iteration of one lane. */
 typedef struct nevh__stage_lane {
     bool grace;      /* the last sweep was a grace sweep */
     bool strays;     /* the largest change has grown, or exceeds the scale */
@@ -38,8 +38,8 @@ typedef struct nevh__stage_lane {
     double first;    /* that of the first sweep */
 } nevh__stage_lane;
 
-/* How many steps' slopes continue the next, of `steps` before by h, at most
-   `most`: where a guess was far off, none but the last step's. */
+/* The number of steps whose derivatives predict the next ones, after `steps`
+   before, at most `most`: one if the last guess was far off. */
 NEVH__INLINE double nevh__stage_remember(double steps, double most,
                                          double first_change) {
     return !(first_change <= NEVH__STAGE_FAR) ? 1

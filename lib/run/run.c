@@ -43,7 +43,7 @@ int nevh__begin_run(nevh__running *r) {
     return NEVH_OK;
 }
 
-/* Whether a step is no more than the kernel's. */
+/* True if a step is the kernel's step and nothing else. */
 static bool plain(const nevh_stepper *s) {
     return !s->friction && !s->work.ledger && !s->work.transform &&
            !s->own_time;

@@ -42,7 +42,7 @@ static bool same(const nevh__samples *a, double t, double u) {
     return t == u || fabs(t - u) < 8 * DBL_EPSILON * size;
 }
 
-/* Whether the next time is passed before t. */
+/* True if the run has passed the next time before t. */
 static bool is_due(const nevh__samples *a, double t) {
     if (!is_left(a))
         return false;
@@ -99,7 +99,7 @@ static int sample_own(nevh__samples *a, double t, const double q[],
     return status;
 }
 
-/* Whether the memory of steps holds the orbit beside their ends. */
+/* True if memory holds the orbit within a step. */
 static bool is_held(const nevh_stepper *s) {
     return !s->own_time && s->work.integrator->kernel->holds;
 }
@@ -142,7 +142,7 @@ static int sample_held(nevh__samples *a, double t, const double q[],
     return status;
 }
 
-/* Where the next step from t ends. */
+/* The end of the next step from t. */
 static double step_end(const nevh__samples *a, double t) {
     double t_end = a->run->orbit->t_end;
     return fabs(t_end - t) < fabs(a->h) ? t_end : t + a->h;

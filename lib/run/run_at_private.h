@@ -13,7 +13,8 @@ nevh__samples *nevh__samples_new(const nevh__running *);
 void nevh__samples_free(nevh__samples *);
 /* The next step whose state is needed; the others need not be shown. */
 size_t nevh__samples_step(const nevh__samples *);
-/* Those up to a state of the run; then, of fixed steps, those before the next one.
+/* Takes the samples up to a state of the run; with fixed steps, also those before
+   the next state.
    returns  as nevh_orbit_run */
 int nevh__samples_at(nevh__samples *, double t, const double q[],
                      const double p[]);

@@ -4,7 +4,7 @@
 #include "gradient/field_private.h"
 #include <string.h>
 
-/* What a saved memory begins with; then memory, last q, last p. */
+/* The header of a saved memory; memory, last q and last p follow. */
 typedef struct {
     char magic[8];
     char integrator[32];
@@ -103,7 +103,7 @@ nevh_stepper *nevh_stepper_copy(const nevh_stepper *s) {
         nevh_stepper_new(s->work.system, s->work.integrator, &s->options);
     if (!copy || !s->planned || !copy->planned)
         return copy;
-    /* Where the system has changed it may have another size, and no use. */
+    /* If the system has changed, memory may have another size and is of no use. */
     bool stale = s->work.field->revision != copy->work.field->revision;
     copy->work.field->revision = s->work.field->revision;
     copy->revision = s->revision;

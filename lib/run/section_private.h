@@ -56,7 +56,7 @@ struct nevh_sections {
     size_t step;
     double origin; /* time at which the run began */
     double t, *q, *p, *memory;
-    /* Where it ends, and its length. */
+    /* The end of the step, and its length. */
     double t_after, h;
     const double *q_after, *p_after, *memory_after;
     double tried; /* its part that the branch has taken, as a time; NAN: none */
@@ -85,8 +85,8 @@ int nevh__section_sample(nevh_sections *, const nevh__section_state *, double s,
                          double *value);
 /* The state after a step of h becomes the track's point. */
 int nevh__section_take(nevh_sections *, nevh__section_state *, double h);
-/* Where between two nodes, on different sides of it, the value is `level`.  No
-   point is found where the value jumps. */
+/* Finds the point between two nodes, on different sides of `level`, at which the
+   value is `level`.  Finds none if the value jumps. */
 int nevh__section_search(nevh_sections *, nevh__section_state *,
                          nevh__section_node a, nevh__section_node b,
                          double level);
@@ -94,8 +94,7 @@ int nevh__section_search(nevh_sections *, nevh__section_state *,
 /* section_turn.c: the nodes of the step at hand.  Where the value may turn and
    cross a level within it, nodes are put there. */
 int nevh__section_nodes(nevh_sections *, nevh__section_state *);
-/* Whether the value may meet a level within the step at hand; where it does
-   not, there is nothing to be found. */
+/* False if the value cannot meet a level within the step at hand. */
 bool nevh__section_near(const nevh_sections *, const nevh__section_state *);
 
 /* section_level.c */

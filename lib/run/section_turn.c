@@ -41,8 +41,8 @@ static bool level_within(const nevh__section_state *k, double low,
     return nevh__section_index(k, high) * k->decl.period >= low;
 }
 
-/* Whether there is a level that the value, which turns near `turn` instead of
-   going straight, may pass. */
+/* True if the value, which turns near `turn`, may pass a level that a straight line
+   would not. */
 static bool matters(const nevh__section_state *k, double turn) {
     double low = fmin(k->value, k->value_after);
     double high = fmax(k->value, k->value_after);
@@ -51,7 +51,7 @@ static bool matters(const nevh__section_state *k, double turn) {
     return level_within(k, bottom, top);
 }
 
-/* Whether the value may turn near a level, as far as the flow tells. */
+/* True if the flow at both ends lets the value turn near a level. */
 static bool may_turn(const nevh__section_state *k, double begin, double end) {
     double change = k->value_after - k->value;
     double reach = (fabs(begin) + fabs(end)) / 4;
@@ -75,8 +75,8 @@ static bool same_side(const dip *d, double value) {
            nevh__section_index(d->k, d->least.value);
 }
 
-/* Where the minimum is next to an end, a point very close to that end is below
-   both neighbours; else there is no minimum. */
+/* Makes `least` smaller than both neighbours: if the minimum is next to an end, by
+   a point very close to that end.  Otherwise there is no minimum. */
 static int enclose(dip *d) {
     double below = d->sign * (d->low.value - d->least.value);
     double above = d->sign * (d->high.value - d->least.value);

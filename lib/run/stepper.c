@@ -71,8 +71,8 @@ static int check_options(nevh_stepper *s, const nevh_integrator *integrator) {
     return NEVH_OK;
 }
 
-/* What acts on the state, or keeps account of it, besides the scheme: the
-   kernel's plan asks for the first two, and the others for its memory. */
+/* Plans the parts besides the scheme that act on the state or keep account of it.
+   The kernel's plan needs the first two; the others need the kernel's memory. */
 static int plan_parts(nevh_stepper *s) {
     nevh_work *w = &s->work;
     const nevh_integrator *integrator = w->integrator;

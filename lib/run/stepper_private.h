@@ -20,7 +20,7 @@ struct nevh_stepper {
     double *buffer; /* holds the memory, aligned for vectors */
     double *rates;  /* n of friction; NULL: there is none */
     struct nevh__friction_step *friction; /* NULL: no friction around steps */
-    /* What the last step returned. */
+    /* The result of the last step. */
     bool has_last;
     double last_t, *last_q, *last_p;
     double last_h;  /* asked of it; not saved */
@@ -74,7 +74,7 @@ void nevh__friction_step_free(
 int nevh__friction_step_apply(nevh_stepper *, double t, double h, double q[],
                               double p[]);
 
-/* Whether nevh_stepper_gain is what came in, or nothing does. */
+/* True if nevh_stepper_gain is known: the energy that came in, or 0. */
 bool nevh__balanced(const nevh_stepper *);
 
 /* No step was taken: memory and time are what they were before nevh__begin. */

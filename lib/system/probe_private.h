@@ -22,7 +22,7 @@ nevh__origin nevh__origin_at(size_t n, double t, const double q[],
 double nevh__spread(const nevh__origin *, const double x[], size_t first,
                     size_t i);
 
-/* What values of H say about T. */
+/* The properties of T that values of H show. */
 typedef struct {
     bool quadratic;
     const char *term; /* with the largest third difference in its momenta; NULL

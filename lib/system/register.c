@@ -12,7 +12,7 @@ static size_t hash(const char *name) {
     return (size_t)(h ^ h >> 32);
 }
 
-/* Where the name is, or is to be. */
+/* The entry of a name, or the free one for it. */
 static nevh__registered *entry_of(const nevh__register *x, const char *name) {
     size_t i = hash(name) & (x->capacity - 1);
     while (x->entries[i].name && strcmp(x->entries[i].name, name) != 0)

@@ -41,7 +41,7 @@ int nevh__fail_as(nevh__report *, const nevh__report *other);
 /* Memory; each returns NULL when it is out or the size overflows.  A request
    for nothing gives memory all the same. */
 void *nevh__array(size_t count, size_t size); /* zeroed */
-/* Whether sizes of blocks of so many lanes do not overflow. */
+/* True if sizes of blocks of so many lanes do not overflow. */
 bool nevh__width_fits(size_t n, size_t width);
 void *nevh__copy(const void *from, size_t count, size_t size);
 void *nevh__grow(void *array, size_t count, size_t size);
@@ -110,7 +110,7 @@ struct nevh_system {
     nevh__report report;
 };
 
-/* What messages call variable i of either half: "x", "p_x", or "q[0]".
+/* The name of variable i of either half in messages: "x", "p_x", or "q[0]".
    returns  text */
 enum { NEVH__VARIABLE = 64 };
 const char *nevh__variable_name(const nevh_system *, bool momentum, size_t i,

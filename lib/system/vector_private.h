@@ -24,8 +24,8 @@ typedef double nevh__vector
 #else
 typedef double nevh__vector;
 #endif
-/* What rows of the explicit steps hold, an orbit each; in steps that are compiled
-   for a scene it may be a vector of several orbits. */
+/* The element of rows in explicit steps, one orbit each; in compiled steps it may
+   be a vector of several orbits. */
 typedef double nevh__number;
 /* Numbers that go through memory to functions and back had better not be stored
    one by one and loaded in pairs. */
@@ -49,7 +49,7 @@ typedef double nevh__number;
     for (size_t i##_from = 0; i##_from < (size); i##_from += (lanes))          \
     NEVH__NO_ALIAS for (size_t i = i##_from; i != i##_from + (lanes); i++)
 
-/* What rounding has lost of a + b, exactly, whichever is larger. */
+/* The rounding error of sum = a + b, exactly, whichever is larger. */
 NEVH__INLINE double nevh__roundoff(double sum, double a, double b) {
     double part = sum - a;
     return (a - (sum - part)) + (b - part);
@@ -59,8 +59,8 @@ NEVH__INLINE double nevh__sum_lanes(const double x[NEVH__LANES]) {
     return ((x[0] + x[1]) + (x[2] + x[3])) + ((x[4] + x[5]) + (x[6] + x[7]));
 }
 
-/* Whether any number of two arrays is not finite: then x - x is NaN, and so is
-   the sum of these. */
+/* True if any number of two arrays is not finite: x - x is then NaN, and so is the
+   sum. */
 NEVH__INLINE bool nevh__not_finite(size_t lanes, size_t size, const double x[],
                                    const double y[]) {
     double bad[NEVH__LANES] = {0};

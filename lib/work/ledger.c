@@ -137,8 +137,9 @@ int nevh__ledger_add(nevh_work *w, double sign, double t, const double q[],
     return fail(w, status);
 }
 
-/* Of a term T(t, p) + V(t, q) that is one function: dV/dt + dT/dt(p0) with
-   dH/dq, dT/dt(p) - dT/dt(p0) with dH/dp, p0 being that of the step's start. */
+/* Adds the part of a term T(t, p) + V(t, q) that is one function: dV/dt + dT/dt(p0)
+   with dH/dq, dT/dt(p) - dT/dt(p0) with dH/dp, where p0 is p at the start of the
+   step. */
 static int add_half(nevh_work *w, size_t i, bool kick, const double t[],
                     const double q[], const double p[]) {
     struct nevh_ledger *l = w->ledger;
@@ -157,7 +158,7 @@ static int add_half(nevh_work *w, size_t i, bool kick, const double t[],
                                            p, l->rate);
 }
 
-/* What the parts asked for have of dH/dt of a term. */
+/* Adds the share of `parts` in dH/dt of a term. */
 static int add_term(nevh_work *w, size_t i, unsigned parts, const double t[],
                     const double q[], const double p[]) {
     struct nevh_ledger *l = w->ledger;

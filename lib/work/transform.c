@@ -64,7 +64,8 @@ static int refuse(nevh_work *w, const char *why) {
                           w->integrator->name, why);
 }
 
-/* Of an H that may read the time, as one function of everything does. */
+/* Refuses an H that depends on time.  Declarations do not decide: H as one function
+   may read t. */
 static int check_time(nevh_work *w) {
     nevh_probe *b = nevh_probe_new(w->system, w->options);
     nevh_finding f = nevh_probe_finding(b, NEVH_IS_AUTONOMOUS);
@@ -205,7 +206,8 @@ int nevh__transform_value(nevh_work *w, size_t points, const double t[],
     return status;
 }
 
-/* Of s grad H, and of (H - H0) grad s, where H is a sum of rounded effects. */
+/* Rounding noise of s grad H, and of (H - H0) grad s, where H is a sum of rounded
+   effects. */
 int nevh__transform_noise(nevh_work *w, double t, const double q[],
                           const double p[], double noise_q[],
                           double noise_p[]) {

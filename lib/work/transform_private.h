@@ -7,7 +7,7 @@
 
 /* A step that takes less than this part of its nominal time gets nowhere. */
 #define NEVH__LEAST_RATE 1e-9
-/* What a lane remembers: NEVH__TRANSFORM_ROWS doubles. */
+/* The memory of a lane: NEVH__TRANSFORM_ROWS doubles. */
 enum { NEVH__BEGUN, NEVH__ENERGY, NEVH__UNIT, NEVH__TRANSFORM_ROWS };
 
 typedef struct nevh__transform {

@@ -44,7 +44,7 @@ size_t nevh__work_row(const nevh_work *w, size_t points) {
     return row;
 }
 
-/* Whether rows of so many lanes can be planned, wherever they are. */
+/* True if rows of so many lanes can be planned, at any addresses. */
 static bool has_plan(const nevh_work *w, size_t lanes, bool whole) {
     double *at = w->field->slopes;
     nevh__evaluation q = nevh__work_plan(w, lanes, at, at, at, at, NULL);
@@ -149,8 +149,8 @@ static double check(size_t count, const double y[], const double d[],
     return sum;
 }
 
-/* What d + compensation loses by rounding is let go: it is below the last bit of the
-   compensation.  The sum with y is exact in two parts, whichever is larger. */
+/* The rounding error of d + compensation is dropped: it is below the last bit of
+   the compensation.  The sum with y is exact in two parts, whichever is larger. */
 static void add(size_t count, double y[], const double d[],
                 double compensation[]) {
     for (size_t i = 0; i < count; i++) {

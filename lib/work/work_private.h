@@ -43,15 +43,15 @@ size_t nevh__work_row(const nevh_work *, size_t points);
    width.  whole: dH/dq and dH/dp are taken together, else apart.  Says so in
    w->planned. */
 size_t nevh__work_lanes(nevh_work *, bool whole, bool numbers);
-/* Whether those of so many orbits are now taken as planned: nevh__work_lanes of
-   all orbits was `lanes`. */
+/* True if gradients of so many orbits are taken as planned; `lanes` is
+   nevh__work_lanes of all orbits. */
 static inline bool nevh__work_as_planned(const nevh_work *w, size_t lanes,
                                          size_t columns) {
     return w->planned && lanes && columns == w->width;
 }
 /* The field's message becomes that of the step; returns its status. */
 int nevh__work_fail_field(nevh_work *, int status);
-/* Where the field has to be made ready first. */
+/* A step for which the field must be prepared first. */
 int nevh__work_step_ready(nevh_work *, double t, double h, double q[],
                           double p[]);
 /* A step that failed without a message, again. */
@@ -99,8 +99,8 @@ NEVH__INLINE int nevh__work_run_points(nevh_work *w,
     return NEVH_OK;
 }
 
-/* Of a run of fixed steps: whether whole steps fill the span, h then being
-   adjusted to it; else the whole ones before the rest. */
+/* True if whole steps fill the span of a run of fixed steps; h is then adjusted to
+   it. steps: all of them, or the whole ones before the rest. */
 bool nevh__whole_steps(double span, double *h, double *steps);
 
 #endif

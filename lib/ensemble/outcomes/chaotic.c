@@ -59,7 +59,7 @@ const nevh__outcome_type nevh__outcome_megno = {
     .of_chaos = megno,
 };
 
-/* How many outcomes tell chaos. */
+/* The number of outcomes that are indicators of chaos. */
 static size_t count_telling(const nevh_ensemble *e) {
     size_t count = 0;
     for (size_t i = 0; i < e->n_outcomes; i++)

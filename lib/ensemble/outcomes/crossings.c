@@ -169,7 +169,7 @@ static void find_flow(nevh_ensemble *e, const double t[], const double q[],
         c->dp[i] = -c->dp[i] - (rates ? rates[i / e->stride] * p[i] : 0);
 }
 
-/* Of all lanes, at states from which the values are known. */
+/* Finds the derivatives of the values in all lanes. */
 static void find_slopes(nevh_ensemble *e, const double t[], const double q[],
                         const double p[], const double values[],
                         double slopes[]) {
@@ -234,7 +234,7 @@ static void load_states(nevh_ensemble *e, size_t lane) {
     x->memory_after = e->run_memory;
 }
 
-/* Whether all values are finite; else the orbit fails, as it does alone. */
+/* True if all values are finite; otherwise the orbit fails, as it does alone. */
 static bool all_finite(nevh_ensemble *e, size_t lane) {
     nevh_sections *x = e->sections;
     double value;

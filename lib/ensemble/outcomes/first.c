@@ -88,8 +88,8 @@ static double locate(nevh_ensemble *e, const nevh__snapshot *from, size_t lane,
     return result(&s, find(&s));
 }
 
-/* Where the parabola through three points turns, and its value there, if that
-   is a maximum. */
+/* The maximum of the parabola through three points, and its place; false if it has
+   none. */
 static bool turn(const double t[3], const double g[3], double *at,
                  double *most) {
     double left = t[1] - t[0], right = t[2] - t[1];
