@@ -28,7 +28,7 @@ static int gradient_noise(const nevh__gradient_step *s, size_t lane,
     return status;
 }
 
-/* What the correction adds is at most the rounding of H over |dz|. */
+/* The correction adds at most the rounding of H over |dz|. */
 static int find_noise(void *step, size_t lane, double noise[]) {
     const nevh__gradient_step *s = step;
     const nevh_work *w = s->work;

@@ -152,7 +152,7 @@ static int take_quotients(const tour *v, double out[]) {
     return status;
 }
 
-/* Whether a lane's increment is too short, and then a longer one's ends. */
+/* True if a lane's increment is too short; ends: those of a longer one. */
 static bool lengthen(const tour *v, size_t k, size_t a, double ends[2]) {
     double start = start_of(v, k, a), end = end_of(v, k, a);
     double middle = start + (end - start) / 2;

@@ -12,7 +12,7 @@ const nevh_integrator *const *nevh_integrators(void) {
     return all;
 }
 
-/* Whether a comma-separated list holds the name. */
+/* True if a comma-separated list holds the name. */
 static bool listed(const char *list, const char *name) {
     size_t length = strlen(name);
     for (const char *at = list; length && at && *at; at += *at == ',') {

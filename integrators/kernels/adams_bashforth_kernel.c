@@ -69,7 +69,7 @@ static int take_end(nevh_work *w, double t, double h, const double q[],
                        block(at, w, END_DP));
 }
 
-/* Of q and p together, whose blocks follow one another. */
+/* Finds the changes of q and p together, whose blocks are consecutive. */
 static void find_change(const nevh_work *w, double h) {
     const double *now = block(w->scratch, w, DQ);
     const double *end = block(w->scratch, w, END_DQ);
@@ -82,7 +82,7 @@ static void find_change(const nevh_work *w, double h) {
     }
 }
 
-/* Where slopes are taken, or were. */
+/* The time of a group of derivatives. */
 typedef enum { NOW, END, LAST } place;
 
 /* A group of points: lanes that start afresh, and others, each at a place. */

@@ -107,8 +107,8 @@ NEVH__INLINE bool nevh__substeps_too_short(const nevh__substeps *l, double h) {
     return !(l->size > 0x1p-52 * fabs(h)) && l->size < fabs(h);
 }
 
-/* How much longer the next substep may be.  Before the first one err_last is the
-   least that is remembered, 1e-4; its logarithm is written out. */
+/* The factor by which the next substep may be longer.  Before the first one
+   err_last is the least that is remembered, 1e-4; its logarithm is written out. */
 NEVH__INLINE double nevh__substeps_factor(const nevh__adaptive_rule *x,
                                           const nevh__substeps *l, double err) {
     double k = x->power, beta = 0.2 / k, now = log2(err);
@@ -162,12 +162,12 @@ NEVH__INLINE void nevh__substeps_choose(nevh__substeps *l, double h) {
     l->step = l->ends ? left : next - l->done;
 }
 
-/* Whether the steps before took too many, too. */
+/* True if this step and those before it took too many substeps. */
 NEVH__INLINE bool nevh__substeps_exceed(const nevh__substeps *l) {
     return l->excess + l->pace.substeps > NEVH__MOST_SUBSTEPS;
 }
 
-/* What the next step is to know of it: a single step may take
+/* The excess of substeps for the next step: a single step may take
    NEVH__MOST_SUBSTEPS, one after another may not. */
 NEVH__INLINE double nevh__substeps_excess(const nevh__substeps *l) {
     return fmax(0, l->excess + l->pace.substeps - 1e5);

@@ -39,7 +39,7 @@ typedef struct {
     struct nevh__leap_owner owner;
 } plan_data;
 
-/* What a step tells the next one stands after the compensations and dV/dq. */
+/* The nevh__density of a step is stored after the compensations and dV/dq. */
 enum { CONTROL_ROWS = sizeof(nevh__density) / sizeof(double) };
 
 static void clear(nevh_work *w) {
@@ -162,7 +162,7 @@ static int find_change(nevh_work *w, const nevh__leap *x, double t,
                 : nevh__leap_change(x, t, c->unit, &c->change);
 }
 
-/* Where an orbit begins; dV/dq and dT/dp are known. */
+/* Initialises an orbit; dV/dq and dT/dp are known. */
 static int begin(nevh_work *w, const nevh__leap *x, double t,
                  nevh__density *c) {
     const plan_data *d = w->plan;

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <stddef.h>
 
-/* What a step tells the next one. */
+/* The state of step control from one step to the next. */
 typedef struct {
     double begun;
     double unit;    /* s at the start of the orbit, or |f| */
@@ -45,9 +45,9 @@ NEVH__INLINE int nevh__leap_account(const nevh__leap *x, bool of_q, double t,
 
 /* s is |f| to the power of minus this. */
 #define NEVH__LEAP_POWER 0.75
-/* Of |f|, from its size at the start. */
+/* |f| counts as at least its size at the start over this. */
 #define NEVH__LEAP_STRETCH 10.
-/* Of differences along the orbit. */
+/* The time of differences along the orbit, over 1/|f|. */
 #define NEVH__LEAP_SPREAD 1e-2
 
 /* |f|, in those units. */

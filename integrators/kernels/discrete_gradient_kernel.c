@@ -210,7 +210,7 @@ static void set_times(const nevh__gradient_step *s, const remembered *m) {
         s->times[lane] = m && m->known[lane] != 0 ? m->t[lane] : s->t;
 }
 
-/* What H lacks at the start, and the energy from here on. */
+/* Finds the deficit of H at the start, and the energy to keep. */
 static int begin_balance(const nevh__gradient_step *s, const remembered *m) {
     const nevh_work *w = s->work;
     bool autonomous = ((const gradient_plan *)w->plan)->autonomous;
@@ -262,8 +262,8 @@ static void find_ends(const nevh__gradient_step *s, size_t active,
         }
 }
 
-/* What D . dz lacks of H(ends) - H(z), and of what that lacks; faded out where
-   it is rounding.  Over |dz|^2, for which dz may be 0. */
+/* The deficit of D . dz against H(ends) - H(z), less the deficit before; faded out
+   if it is rounding.  Over |dz|^2, for which dz may be 0. */
 static double find_defect(const nevh__gradient_step *s, size_t active, size_t a,
                           size_t lane, const double out[]) {
     const nevh_work *w = s->work;
@@ -281,8 +281,8 @@ static double find_defect(const nevh__gradient_step *s, size_t active, size_t a,
     return deficit / ((1 + noise * noise) * (way + nowhere / way));
 }
 
-/* Where H(ends) is not what D says, adds the smallest vector, by the
-   metric, that makes it so. */
+/* If D does not give H(ends), adds the smallest vector, by the metric, that makes
+   it so. */
 static void balance(const nevh__gradient_step *s, size_t active,
                     const size_t lanes[], double out[]) {
     const nevh_work *w = s->work;

@@ -117,7 +117,7 @@ static int fail(nevh_work *w, double t, const char *why) {
                           w->integrator->name, t, why);
 }
 
-/* Where GSL writes its estimates, behind the states of all lanes. */
+/* Scratch for GSL's error estimates, behind the states of all lanes. */
 static double *errors(const nevh_work *w) {
     return w->scratch + 2 * w->n * w->width;
 }
@@ -137,7 +137,7 @@ static int choose_size(nevh_work *w, double h, const double y[], double *size) {
     return fabs(length) > DBL_EPSILON * fabs(h) ? GSL_SUCCESS : GSL_EMAXITER;
 }
 
-/* By h under GSL's control; y and the step's size in and out. */
+/* Steps by h under GSL's control; y and the step's size in and out. */
 static int adapt(nevh_work *w, double h, double y[], double *size) {
     gsl_plan *g = w->plan;
     double t = 0;

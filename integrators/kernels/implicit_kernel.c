@@ -279,7 +279,7 @@ static int account(const family_step *s, const family_plan *g) {
     return status;
 }
 
-/* Those of earlier steps move on. */
+/* Moves the derivatives of earlier steps on by one step. */
 static void keep_slopes(const family_step *s, const family_plan *g,
                         const family_memory *m) {
     size_t width = s->work->width, step = g->tableau->stages * width;
@@ -342,7 +342,7 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     return status ? status : commit(&s, g, q, p);
 }
 
-/* What sums of momenta lost belongs to momenta; slopes are only a guess. */
+/* Scales the compensations of momenta; derivatives are only a guess and stay. */
 static void apply_friction(nevh_work *w, const double factor[]) {
     double *compensation = recall(w).compensation + w->size;
     for (size_t i = 0; i < w->size; i++)

@@ -129,7 +129,7 @@ static void take_origin(nevh__nystrom_state *y) {
     }
 }
 
-/* Where T depends on time there is no second-order equation. */
+/* Refuses a T that depends on time: there is no second-order equation. */
 static int check_kinetic(nevh__nystrom_state *y) {
     nevh_work *w = y->work;
     const char *term;
@@ -165,7 +165,7 @@ static int ask(nevh__nystrom_state *y, double velocities[]) {
                : NEVH_OK;
 }
 
-/* What planning asked for does not count. */
+/* Takes the evaluations of planning out of the counts. */
 static void forget(nevh_field *f) {
     for (size_t i = 0; i < f->n_terms; i++)
         f->terms[i].values = 0;
@@ -242,7 +242,7 @@ nevh__nystrom_kinetic nevh__nystrom_kinetic_of(const nevh_work *w) {
                                    y->inverse};
 }
 
-/* How gradients are taken, a constant of inlined functions: planned, of so many
+/* The evaluation of gradients, a constant of inlined functions: planned, of so many
    lanes, or by nevh_work_gradient. */
 enum { BY_WORK = 0 };
 
@@ -389,7 +389,7 @@ static int take(nevh__stages *s, size_t first, size_t until) {
     return status;
 }
 
-/* How far q moves, and -h sum_j weights[j] D_j, of each column. */
+/* The change of q, and -h sum_j weights[j] D_j, for each column. */
 NEVH_SIMD static int sum_up(nevh__nystrom_state *y, const nevh__stages *s,
                             size_t of_q, size_t of_p, double c, double out[]) {
     const struct nevh__nystrom_owner owner = {y, s};

@@ -44,7 +44,7 @@ NEVH__INLINE int nevh__nystrom_kick(const nevh__nystrom_step *x, int way,
 NEVH__INLINE void nevh__nystrom_time(const nevh__nystrom_step *x, int way,
                                      double c);
 
-/* Of T_p: c p - h sum. */
+/* Places the momenta for T_p: c p - h sum. */
 NEVH__INLINE void nevh__nystrom_place_momenta(const nevh__nystrom_step *x,
                                               const nevh__sum *sum, double c) {
     const double *compensation = x->compensation + x->size;
@@ -63,7 +63,7 @@ NEVH__INLINE void nevh__nystrom_place_momenta(const nevh__nystrom_step *x,
                            x->h[i] * nevh__add_up_one(sum, x->slopes + i));
 }
 
-/* What q moves by: h (T_p + (c - 1) T_p(0)). */
+/* The change of q: h (T_p + (c - 1) T_p(0)). */
 #define NEVH__NYSTROM_WAY(type, x, i, c)                                       \
     ((x)->moves ? *(const type *)((x)->h + (i)) *                              \
                       (*(const type *)((x)->velocities + (i)) +                \
@@ -196,7 +196,7 @@ NEVH__INLINE void nevh__nystrom_sum_kicks(const nevh__nystrom_step *x,
         out[i] = -(x->h[at] * nevh__add_up_one(sum, x->slopes + at));
 }
 
-/* How far q moves by the velocity at c p - h sum. */
+/* The change of q by the velocity at c p - h sum. */
 NEVH__INLINE int nevh__nystrom_sum_drifts(const nevh__nystrom_step *x, int way,
                                           const nevh__sum *sum, double c,
                                           size_t apart, double out[]) {

@@ -17,7 +17,7 @@
 
 /* Sums besides those of the stages. */
 enum { CHANGE, ERROR, COARSE, ENDS };
-/* How gradients are taken: constants of inlined functions. */
+/* The evaluation of gradients: constants of inlined functions. */
 enum { BY_WORK, PLANNED };
 
 struct nevh__runge_kutta_state {
@@ -170,7 +170,7 @@ NEVH__INLINE void add_friction(const nevh__stages *s, const double p[],
     }
 }
 
-/* Of one orbit a lane of each row will do. */
+/* For one orbit a lane of each row suffices. */
 NEVH__INLINE bool is_finite(const nevh__stages *s, size_t size,
                             const double slopes[]) {
     double bad[NEVH__LANES] = {0}, one = 0;

@@ -21,7 +21,7 @@ typedef struct {
     bool planned; /* by planned calls */
 } nevh__stages;
 
-/* What step control needs from a family of methods. */
+/* The interface of a family of methods to step control. */
 typedef struct {
     size_t stages;
     int error_power;    /* the power of h with which the estimate falls */
@@ -31,15 +31,15 @@ typedef struct {
        one is in `slope`; to there goes that of stage 0 alone, and of a last
        stage that is the next step's first. */
     int (*take)(nevh__stages *, size_t first, size_t until);
-    /* What the step adds to the state, and the estimates, 2n x columns each;
-       error may be NULL. */
+    /* The change of the state in the step, and the error estimates, 2n x columns
+       each; error may be NULL. */
     int (*finish)(const nevh__stages *, double change[], double error[],
                   double coarse[]);
     /* Hands the stages to the balance of the energy, where one is kept. */
     int (*account)(const nevh__stages *);
 } nevh__family;
 
-/* What the kernels keep. */
+/* The plan of the kernels. */
 typedef struct nevh__adaptive nevh__adaptive;
 typedef struct nevh__nystrom_state nevh__nystrom_state;
 typedef struct nevh__runge_kutta_state nevh__runge_kutta_state;
@@ -50,15 +50,15 @@ typedef struct {
     nevh__adaptive *adaptive; /* NULL: steps do not adapt */
 } nevh__stages_plan;
 
-/* What planning found of T, for those who take the stages otherwise. */
+/* The properties of T found in planning, for other implementations of the stages. */
 typedef struct {
     bool diagonal, moves;         /* as in nevh__nystrom_step */
     const double *rest, *inverse; /* n each: T_p(0); W, if it is diagonal */
 } nevh__nystrom_kinetic;
 nevh__nystrom_kinetic nevh__nystrom_kinetic_of(const nevh_work *);
 
-/* Where lanes have constants of their own: one takes those of a work of one orbit,
-   or those of another lane.  False: T is at rest in one alone. */
+/* For lanes with constants of their own: a lane takes those of a work of one orbit,
+   or those of another lane.  False: T is at rest in only one of them. */
 bool nevh__nystrom_lane_take(nevh_work *, size_t lane, const nevh_work *own);
 void nevh__nystrom_lane_copy(nevh_work *, size_t from, size_t to);
 
@@ -67,7 +67,7 @@ int nevh__stages_step(nevh_work *, double t, double h, double q[], double p[]);
 /* Steps that adapt, for w->options->tolerance > 0. */
 int nevh__adaptive_plan(nevh_work *);
 void nevh__adaptive_clear(nevh_work *);
-/* That of a work whose steps adapt. */
+/* The rule of step control of a work whose steps adapt. */
 const nevh__adaptive_rule *nevh__adaptive_rule_of(const nevh_work *);
 
 #endif

@@ -25,7 +25,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How gradients are taken: constants of inlined functions. */
+/* The evaluation of gradients: constants of inlined functions. */
 typedef enum {
     BY_POINT,  /* planned, of one state, exact */
     BY_NUMBER, /* planned, of one state, from values */
@@ -50,7 +50,7 @@ typedef struct {
     nevh__evaluation kick, drift; /* unless the way is BY_WORK */
 } splitting_plan;
 
-/* What is remembered of each half, and the last slope of a step. */
+/* The memory of each half, and the last derivative of a step. */
 typedef struct {
     double *compensation_q, *compensation_p, *kept, *has_kept;
 } memory;
@@ -154,7 +154,7 @@ static int plan(nevh_work *w) {
     return NEVH_OK;
 }
 
-/* Whose step it is, and how long rows are. */
+/* The includer's data of a step. */
 struct nevh__splitting_owner {
     nevh_work *work;
     const splitting_plan *plan;
@@ -393,8 +393,8 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
                                   : step_points)(w, t, h, q, p);
 }
 
-/* What is kept is a dH/dp, or a dH/dq that may read p, unless declarations say
-   that it does not. */
+/* The gradient kept is a dH/dp, or a dH/dq that may read p unless declarations
+   exclude it. */
 static void apply_friction(nevh_work *w, const double factor[]) {
     const splitting_plan *o = w->plan;
     memory m = recall(w, w->size);

@@ -29,7 +29,7 @@ size_t nevh__guess_steps(size_t stages) {
     return stages > FEW_STAGES ? 1 : steps < MOST_STEPS ? steps : MOST_STEPS;
 }
 
-/* Of s slopes a step; nodes at the ends are those of two steps. */
+/* The degree for s derivatives a step; nodes at the ends belong to two steps. */
 static size_t degree_of(const nevh__rule *r) {
     size_t s = r->stages, most = r->c[0] > 0 ? 2 * s - 1 : 2 * s - 2;
     return s + 2 < most ? s + 2 : most;

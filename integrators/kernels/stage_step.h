@@ -47,7 +47,7 @@ typedef struct {
     const struct nevh__stage_owner *owner; /* the includer's */
 } nevh__stage_step;
 
-/* How sweeps change the rows that are solved for. */
+/* The changes that sweeps make to the rows that are solved for. */
 typedef struct {
     size_t first, rows; /* of the gradient */
     const double *unit; /* 2n rows of lanes: |h| over the scale */
@@ -258,7 +258,7 @@ NEVH__INLINE int nevh__stage_map(const nevh__stage_step *x, size_t lanes) {
     return nevh__stage_slopes(x, true, false);
 }
 
-/* How a sweep differs from the last, of the lanes of all vectors. */
+/* The difference between a sweep and the one before, for the lanes of all vectors. */
 typedef struct {
     double all[NEVH__LANES];    /* sum of changes: 0: none; finite or not */
     double better[NEVH__LANES]; /* sum of those that are smaller than ever */

@@ -150,7 +150,7 @@ static int ask(const nevh__sweeps *s, bool q, bool p) {
                                       q ? dh_dq : NULL, p ? dh_dp : NULL);
 }
 
-/* Where it is exact and planned, it is not looked at yet. */
+/* An exact, planned gradient is not checked yet. */
 NEVH__INLINE int nevh__stage_slopes(const nevh__stage_step *x, bool q, bool p) {
     const nevh__sweeps *s = x->owner;
     const nevh__evaluation *e = q && p ? &s->whole : q ? &s->kick : &s->drift;
@@ -241,7 +241,7 @@ static void load_state(nevh__sweeps *s, const nevh__sweep_start *x,
     s->changes.unit = to + 4 * half;
 }
 
-/* Of how many steps by h the orbit knows slopes. */
+/* The number of steps by h whose derivatives the orbit remembers. */
 static double steps_of(const nevh__sweep_start *x, size_t i) {
     size_t lane = x->lanes[i < x->count ? i : 0];
     return x->past_h[lane] == x->h ? x->steps[lane] : 0;

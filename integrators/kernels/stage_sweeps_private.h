@@ -31,18 +31,18 @@ void nevh__stage_weights_take(nevh__stage_weights *, const nevh__tableau *);
 void nevh__stage_weights_set(nevh__stage_weights *, const nevh__tableau *,
                              double h);
 
-/* Whether H is T(p) + V(q) to sweeps. */
+/* True if sweeps treat H as T(p) + V(q). */
 static inline bool nevh__stages_are_partitioned(const nevh_work *w) {
     return !w->transform && (nevh_system_traits(w->system) & NEVH_SEPARABLE);
 }
 
-/* Whether Newton's iteration is there for their equations. */
+/* True if the equations are small enough for Newton's iteration. */
 static inline bool nevh__stages_have_newton(const nevh_work *w, size_t stages) {
     return 2 * w->n * stages <= NEVH__MOST_DENSE;
 }
 
-/* Of stage i, what continues a variable's slopes of so many steps, `width` apart:
-   by those of all that are kept, or of one.  0: there are none. */
+/* Predicts a variable's derivative at stage i from those of so many steps, `width`
+   apart: of all that are kept, or of one.  0: there are none. */
 double nevh__stage_continue(const nevh__stage_weights *, size_t i, size_t width,
                             double steps, const double past[]);
 
@@ -55,7 +55,7 @@ typedef enum { NEVH__ONE_ORBIT, NEVH__EIGHT_ORBITS, NEVH__ORBITS } nevh__swept;
 
 typedef struct nevh__stage_owner nevh__sweeps; /* see stage_step.h */
 
-/* Whether sweeps of one orbit, or of eight, are of use. */
+/* True if sweeps of one orbit, or of eight, are useful. */
 bool nevh__sweeps_suit(const nevh_work *, size_t stages, nevh__swept);
 /* The weights outlive it.  NULL: out of memory. */
 nevh__sweeps *nevh__sweeps_new(nevh_work *, const nevh__stage_weights *,
@@ -76,8 +76,8 @@ typedef struct {
     const double *past_h; /* by which these were; one row */
 } nevh__sweep_start;
 
-/* Of one orbit, or of lanes next to each other: whether they can be swept, which
-   one always can. */
+/* For one orbit, or for lanes next to each other; false if these cannot be swept
+   together. */
 bool nevh__sweeps_begin(nevh__sweeps *, const nevh__sweep_start *);
 /* Goes on with one orbit that is a lane of others' sweeps. */
 void nevh__sweeps_take_over(nevh__sweeps *, const nevh__sweep_start *,
@@ -91,8 +91,8 @@ void nevh__sweeps_count(const nevh__sweeps *, size_t sweeps);
 void nevh__sweeps_fetch(const nevh__sweeps *, size_t lane, size_t width,
                         double slopes[]);
 
-/* Of any orbits: the slopes that the unknown ones of `slopes`, 2n x stages rows
-   of `width`, lead to, to out[row*count + i]; the others go to `slopes`. */
+/* For any orbits: the derivatives that the unknown ones of `slopes`, 2n x stages
+   rows of `width`, lead to, to out[row*count + i]; the others go to `slopes`. */
 int nevh__sweeps_map(nevh__sweeps *, const nevh__sweep_start *, double slopes[],
                      double out[]);
 /* The states of the stages that slopes lead to. */

@@ -44,7 +44,7 @@ nevh__tableau *nevh__lobatto_new(size_t stages);
 /* The implicit Euler method: one stage, at the end of the step.  NULL for more,
    or when memory is out. */
 nevh__tableau *nevh__implicit_euler_new(size_t stages);
-/* That of a scheme of one of the three. */
+/* The tableau of a scheme of one of the three. */
 nevh__tableau *nevh__stage_tableau_new(const nevh_integrator *);
 void nevh__tableau_free(nevh__tableau *);
 
@@ -52,8 +52,9 @@ void nevh__tableau_free(nevh__tableau *);
    `alike`: they are the same but for rounding, and are to be so exactly. */
 nevh__tableau *nevh__tableau_new(const nevh__rule *, bool alike);
 void nevh__gauss_rule(size_t stages, nevh__rule *);
-/* How many steps' slopes lead to a guess of the next; if several, their weights: of the
-   slope at stage j, k steps before the last, guess[(k*stages + j)*stages + i]. */
+/* The number of steps whose derivatives predict those of the next; if several,
+   their weights: of the derivative at stage j, k steps before the last,
+   guess[(k*stages + j)*stages + i]. */
 size_t nevh__guess_steps(size_t stages);
 void nevh__guess_weights(const nevh__rule *, double guess[]);
 /* P_s(x) and its derivative, |x| < 1; s from 1. */

@@ -145,9 +145,9 @@ static bend bend_of(const survey *s, size_t k) {
     return b;
 }
 
-/* Where one of the two is missing, as for a coordinate that H does not depend
-   on, the other is made as large as the largest frequency found; where nothing
-   is curved, the scales remain. */
+/* If one of the two is missing, as for a coordinate that H does not depend on, the
+   other is set to the largest frequency found; if nothing is curved, the scales
+   remain. */
 static void find_ratios(survey *s, const double scale[], double ratio[]) {
     const double *length = s->selection.length;
     uint64_t random = 1;
@@ -207,7 +207,7 @@ static double curvature(survey *s, size_t at, double step, double v[]) {
     return norm;
 }
 
-/* Of the run; of states beside it, where nothing is curved on it. */
+/* The largest curvature on the run; of nearby states if nothing is curved on it. */
 static double largest_curvature(survey *s, const double ratio[]) {
     const nevh__step_selection *e = &s->selection;
     double step = INFINITY, first = 0, most = 0;

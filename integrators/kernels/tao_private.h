@@ -12,7 +12,7 @@ double nevh__composition_part(const nevh_splitting *, size_t i, double h);
 
 enum { NEVH__TAO_MOST_WEIGHTS = 4 }; /* of a table */
 
-/* What holds the two copies together. */
+/* The binding of the two copies. */
 typedef struct {
     double omega;
     double *ratio; /* n: lengths of p over lengths of q */

@@ -30,7 +30,7 @@ static size_t affordable(const nevh__step_selection *e) {
     return (size_t)fmin(most, (double)room);
 }
 
-/* What GSL works with; y: room for four states. */
+/* GSL's stepper and its state; y: room for four states. */
 typedef struct {
     gsl_odeiv2_system ode;
     gsl_odeiv2_step *step;

@@ -12,7 +12,7 @@
 #include <math.h>
 #include <stddef.h>
 
-/* Where a group of evaluations is taken, and their results: n rows each. */
+/* The states of a group of evaluations, and their results: n rows each. */
 typedef struct {
     nevh__number *q, *p, *dh_dq, *dh_dp;
 } nevh__tao_group;
@@ -54,9 +54,9 @@ NEVH__INLINE double nevh__tao_part(size_t count, const double weights[],
     return rest;
 }
 
-/* Of parts their lengths, and cosines and sines of 2 omega times these: 3 parts
-   numbers.  No compiler takes those of constants: their last bits would be its
-   own. */
+/* The lengths of parts, and cosines and sines of 2 omega times these: 3 parts
+   numbers.  The angle is volatile, so that no compiler evaluates them with last
+   bits of its own. */
 NEVH__INLINE void nevh__tao_prepare(size_t count, const double weights[],
                                     double omega, double h, double lengths[]) {
     size_t parts = 2 * count + 1;

@@ -37,8 +37,8 @@ void nevh__taylor_use(nevh_work *w, nevh__series_code *code,
     plan->differs = differs;
 }
 
-/* What is narrow in H, a series sees from some ten times its width away, and
-   what steps of h would find it is not to pass. */
+/* A series detects a narrow part of H from about ten times its width.  It must not
+   pass one that steps of h would find: its length is at most this many steps. */
 static const double most_steps = 8;
 
 enum { HEAD = 5, FIRST = 8 };
@@ -84,9 +84,9 @@ static size_t order_for(double tolerance) {
 /* Tolerances below this are of errors that doubles cannot hold. */
 static const double finest = DBL_EPSILON;
 
-/* Whether the processor has long doubles of its own, with 64 bits.  Elsewhere
-   they are as short as doubles, or made by a library, which takes a hundred
-   times as long: then doubles do. */
+/* True if the processor has 64-bit long doubles.  Elsewhere they are as short as
+   doubles, or made by a library that takes a hundred times as long: doubles are
+   used. */
 enum { LONGER = LDBL_MANT_DIG == 64 };
 
 static bool plan_series(const nevh_work *w, taylor_plan *plan) {
@@ -130,7 +130,7 @@ static int plan(nevh_work *w) {
     return NEVH_OK;
 }
 
-/* Of order k, relative to the state; times a power of two. */
+/* The size of order k, relative to the state; times a power of two. */
 static double size_of(const nevh_work *w, const double rows[], size_t k,
                       int shift) {
     double most = 0;
@@ -142,8 +142,9 @@ static double size_of(const nevh_work *w, const double rows[], size_t k,
     return ldexp(most, shift);
 }
 
-/* How long a series holds, in its unit.  By powers of two in units in which the state changes by
-   itself in about 1, so that other units of time or length give the same digits. */
+/* The length for which a series holds, in its unit.  Lengths are powers of two in
+   units in which the state changes by itself in about 1, so that other units of
+   time or length give the same digits. */
 static double reach_of(const nevh_work *w, const double rows[]) {
     const taylor_plan *plan = w->plan;
     int exponent = 0;
@@ -196,7 +197,8 @@ static void pass(const chain *z, double time) {
     *z->since = whole;
 }
 
-/* What the first coefficients lost, taken from the state with all its digits. */
+/* Finds the rounding errors of the first coefficients, from the state with all its
+   digits. */
 static void find_lost(const nevh_work *w, const chain *z, double t) {
     const taylor_plan *plan = w->plan;
     size_t each = 2 * w->n;
@@ -230,7 +232,7 @@ static int fail_at_edge(nevh_work *w, const chain *z, double t) {
                           w->integrator->name, t, why);
 }
 
-/* That of compiled series, 1, unless coefficients might overflow or underflow. */
+/* The unit of compiled series, 1, unless coefficients might overflow or underflow. */
 static double unit_for(const taylor_plan *plan, double h) {
     int exponent = h != 0 ? ilogb(h) : 0;
     return abs(exponent) * (int)plan->order > 512 ? ldexp(1, exponent) : 1;
@@ -342,8 +344,8 @@ static const double points[] = {0.1834346424956498, 0.5255324099163290,
 static const double weights[] = {0.3626837833783620, 0.3137066458778873,
                                  0.2223810344533745, 0.1012285362903763};
 
-/* What a part of a series, to `until` since its beginning, has passed; `later`:
-   the time then. */
+/* Accounts for the part of a series up to `until` since its beginning; `later`: the
+   time then. */
 static int account(nevh_work *w, const chain *z, double from, double until,
                    double later) {
     double *state = w->scratch + w->scratch_size - 2 * w->n;
@@ -368,7 +370,7 @@ static int give_up(const nevh_work *w, double t, double h, const char *why) {
                           w->options->tolerance);
 }
 
-/* By h, the time then being `end`. */
+/* Advances by h, to the time `end`. */
 static int advance(nevh_work *w, const chain *z, double end, double h) {
     nevh__pace pace = {0};
     char why[NEVH__WHY];
@@ -397,7 +399,7 @@ static int advance(nevh_work *w, const chain *z, double end, double h) {
     return status;
 }
 
-/* Whether the state is a value of the series that is there. */
+/* True if the series at hand has the state after h. */
 static bool reaches(const chain *z, double h) {
     return *z->begun != 0 && fabs(*z->since + h) < 0.999 * *z->reach;
 }

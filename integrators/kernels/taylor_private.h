@@ -8,8 +8,7 @@
 
 extern const nevh_kernel nevh__taylor_kernel;
 
-/* What coefficients are of; and compiled code that takes them, instead of the
-   recurrences.
+/* Compiled code of the coefficients, in place of the recurrences.
    numbers  those of the recurrence as doubles, borrowed
    watched  out: as nevh__series_watched_double
    differs  borrowed, and set once the code gives other digits than the recurrence,
@@ -32,7 +31,7 @@ typedef struct {
     size_t compared; /* series */
 } nevh__taylor_plan;
 
-/* Of one lane, in memory or scratch. */
+/* The series of one lane, in memory or scratch. */
 typedef struct {
     double *begun;          /* whether there is a series */
     double *since;          /* time since its beginning, of either sign, */

@@ -76,7 +76,7 @@ static int plan_lengths(nevh_chaos *c, const nevh_integrator *scheme) {
     return c->report.status;
 }
 
-/* How fast displacements turn, or grow, at a state; 0 where that is unknown. */
+/* The rate at which displacements rotate, or grow, at a state; 0 if it is unknown. */
 static double rate_at(const nevh_chaos *c, nevh_rates *r, const double z[]) {
     double frequency = 0, growth = 0;
     if (nevh_rates_at(r, c->t_start, z, z + c->n, &frequency, &growth))
@@ -191,7 +191,7 @@ static int plan_tangent(nevh_chaos *c, const nevh_integrator *scheme,
     return report->status;
 }
 
-/* Whether a step of the variational system is the derivative of a step. */
+/* True if a step of the variational system is the derivative of a step. */
 static bool is_natural(const nevh_integrator *scheme) {
     return scheme->symplectic != NEVH_EXTENDED &&
            scheme->preserves_energy != NEVH_YES && !scheme->kernel->opaque;

@@ -14,7 +14,7 @@ enum {
     LOOKS_TOGETHER = 64
 }; /* looks until the next orbit is asked for again */
 
-/* What is stepped: of the analysis, or a copy of it. */
+/* The states that are stepped: those of the analysis, or a copy. */
 typedef struct {
     double *q, *p, *memory;
 } columns;

@@ -11,8 +11,8 @@
 static const double tolerance = 1e-10, usual_seconds = 2, usual_budget = 0.5;
 enum { STARTS = 4, LOOKS = 1024, PIECES = 64, LARGEST = 4096 };
 
-/* What gradients of many terms cost, each by a call of its own, above what
-   nevh_counts_seconds takes for those of few. */
+/* The cost of gradients of many terms, each by a call of its own, above that of
+   few, which nevh_counts_seconds has. */
 static double spent_on_terms(const nevh_chaos *c, const nevh_counts *counts) {
     static const double a_term = 8e-8, few = 32;
     const nevh_system *s = c->tangent ? c->variational->system : c->system;

@@ -23,7 +23,7 @@ void nevh__variational_free(nevh__variational *);
 /* Batches in time; full, they are merged in pairs. */
 enum { NEVH__BINS = 64 };
 
-/* How far a start has come. */
+/* The progress of a start. */
 typedef struct {
     double done, seen;       /* steps; those when it was last looked at */
     double span[NEVH__BINS]; /* the time of each bin */
@@ -138,7 +138,7 @@ typedef struct {
                      nevh__chaos_aligned */
     bool together; /* H reads t: orbits begin together */
 } nevh__chaos_jobs;
-/* What a batch needs.  returns  whether there was memory */
+/* Plans a batch; false if memory is out. */
 bool nevh__chaos_batch_plan(nevh_chaos *);
 void nevh__chaos_batch_free(nevh__chaos_batch *); /* NULL is allowed */
 void nevh__chaos_batch_run(nevh_chaos *, const nevh__chaos_jobs *);

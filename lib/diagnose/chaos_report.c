@@ -11,7 +11,7 @@ static const double significant = 3; /* errors of an exponent of chaos */
 static const double grown = 30;
 enum { BINS_A_BATCH = 4, TURNS = 100, CROSSINGS = 40 };
 
-/* Of one start. */
+/* The exponent of one start. */
 typedef struct {
     double rate, error; /* error: INFINITY where there are too few batches */
 } estimate;
@@ -74,7 +74,7 @@ static void add_halves(const nevh_chaos *c, size_t start, size_t log,
     }
 }
 
-/* What linear growth leaves. */
+/* The exponent that linear growth leaves. */
 static double resolution(const nevh_chaos *c, size_t start) {
     return -log(dropped) / ((1 - dropped) * elapsed(c, start));
 }
@@ -105,8 +105,8 @@ double nevh__chaos_growth(const nevh_chaos *c, size_t start) {
     return sum;
 }
 
-/* Whether the orbit itself goes on changing as chaos needs: it neither rests nor
-   runs away as fast as its neighbours do. */
+/* True if the orbit itself keeps changing, as chaos requires: it neither rests nor
+   escapes as fast as its neighbours. */
 static bool wanders(const nevh_chaos *c, size_t start) {
     static const double at_rest = 1e-6; /* in lengths of H */
     double moved = c->start[start].moved;
@@ -192,8 +192,8 @@ static size_t starts_of(const nevh_chaos *c, nevh_chaos_verdict verdict) {
     return count;
 }
 
-/* Where the orbit seems chaotic alone, it is an unstable one among others.  The
-   exponent of all that agree must be significant, too. */
+/* An orbit that is the only chaotic one is an unstable one.  The mean exponent of
+   all that agree must be significant, too. */
 static nevh_chaos_verdict verdict_among_starts(const nevh_chaos *c) {
     static const size_t enough = 4; /* starts to judge by */
     nevh_chaos_verdict own = verdict_on(c, 0);

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Of orbits near by, on either side, in lengths of H. */
+/* The distance of nearby orbits, on either side, in lengths of H. */
 static const double near_by = 1e-5;
 /* Displacements are made unit vectors again beyond that size, and looked at
    more often where they grow by more. */
@@ -64,7 +64,7 @@ static void scale_by(double a[], double x, size_t m) {
         a[k] *= x;
 }
 
-/* What is left of b without its part along the unit vector a. */
+/* Subtracts from b its part along the unit vector a. */
 static void remove_part(double b[], const double a[], size_t m) {
     double x = dot(a, b, m);
     for (size_t k = 0; k < m; k++)

@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the energies met, an error that exceeds all at the start is beyond measure. */
+/* Part of the energies met: an error that exceeds all energies at the start is not
+   small. */
 static const double of_met = 0.1;
 
 static int plan(nevh_energy *e, const nevh_system *s, bool portable) {
@@ -99,8 +100,7 @@ const char *nevh_energy_message(const nevh_energy *e) {
     return e ? e->report.text : "out of memory";
 }
 
-/* Whether the observer may be told of that stepper, which is "to follow" or
-   "to expect". */
+/* Fails if the observer cannot use that stepper; told: "to follow" or "to expect". */
 static int check_stepper(nevh_energy *e, const nevh_stepper *s,
                          const char *told) {
     if (e->report.status)
@@ -136,8 +136,8 @@ int nevh_energy_follow(nevh_energy *e, const nevh_stepper *s) {
     return NEVH_OK;
 }
 
-/* How far rounding moves derivatives by differences, and how far these are
-   from derivatives of any H, relative to them. */
+/* noise: the rounding of derivatives by differences; blur: their distance from
+   derivatives of any H, relative to them. */
 static void find_blur(const nevh_field *f, double *noise, double *blur) {
     *noise = *blur = 0;
     for (size_t i = 0; f && i < nevh_field_step_count(f); i++) {
@@ -179,7 +179,7 @@ void nevh__energy_lane_copy(nevh_energy *e, size_t from, size_t to) {
     nevh__field_lane_copy(e->field, from, to);
 }
 
-/* What came in from outside so far. */
+/* The energy from outside so far. */
 static double gain(const nevh_energy *e, size_t lane) {
     return e->followed ? nevh_stepper_gain(e->followed, lane) : 0;
 }
@@ -266,7 +266,7 @@ double nevh_energy_passed(const nevh_energy *e, const char **effect) {
     return any ? e->passage.at : NAN;
 }
 
-/* What the error would be, were it the last one. */
+/* The error at the current state. */
 static double error_now(const nevh_energy *e, size_t lane) {
     double came = gain(e, lane) - e->gained[lane] + e->book.booked;
     return (e->h[lane] - e->initial[lane] - came) / e->scale[lane];
@@ -281,7 +281,7 @@ static void book(nevh_energy *e, double t, const double q[], const double p[]) {
     e->missed += fmin(wrong, change * e->scale[0]);
 }
 
-/* Of one orbit: what lies between the last state and this one. */
+/* Examines the interval between the last state and this one, of one orbit. */
 static void look_back(nevh_energy *e, double t, const double q[],
                       const double p[]) {
     static const double large = 1e-3; /* of the scale */
@@ -380,8 +380,8 @@ double nevh_energy_error(const nevh_energy *e, size_t lane) {
     return e && e->begun && lane < e->width ? e->trend[lane].last : 0;
 }
 
-/* Of values, and of a random walk in the steps, whose gradients are off by that
-   or by the noise of differences. */
+/* The rounding of values, and of a random walk of the steps, whose gradients have
+   that error or the noise of differences. */
 static double rounding_of(const nevh_energy *e, size_t lane, double scale) {
     double each = fmax(DBL_EPSILON, e->noise[lane] / 16);
     double walk = 4 * each * sqrt((double)e->steps[lane]);

@@ -25,7 +25,7 @@ static bool value_at(nevh__book *b, const step *s, double of, double t,
     return !nevh_field_value(b->field, 1, &t, b->state, b->state + b->n, h);
 }
 
-/* By how much H changes from a time to another, at the state of a third. */
+/* The change of H from one time to another, at the state of a third. */
 static double change(nevh__book *b, const step *s, double of, double t0,
                      double t1) {
     double before, after;
@@ -34,7 +34,7 @@ static double change(nevh__book *b, const step *s, double of, double t0,
     return known ? after - before : 0;
 }
 
-/* What a step takes out by friction: momenta decay at H of its middle. */
+/* The energy that a step loses by friction: momenta decay at H of its middle. */
 static double friction_of(nevh__book *b, const step *s) {
     double start = s->from[2 * b->n], h = s->t - start, middle = start + h / 2;
     double before, after;

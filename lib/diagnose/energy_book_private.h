@@ -7,7 +7,7 @@
 #include "expression/timing_private.h"
 #include <nevh/gradient.h>
 
-/* Of one orbit. */
+/* The book of one orbit. */
 typedef struct {
     nevh_field *field;         /* for values */
     const nevh_timing *timing; /* NULL: nothing is booked */

@@ -12,8 +12,8 @@
 void nevh__energy_observe_lanes(nevh_energy *, bool on[], const size_t step[],
                                 const double t[], const double q[],
                                 const double p[]);
-/* Of a system whose lanes have constants of their own: a lane takes those of
-   each term, and expects what a stepper of them leaves. */
+/* For a system whose lanes have constants of their own: a lane takes those of each
+   term, and the rounding and noise of a stepper of them. */
 void nevh__energy_lane_take(nevh_energy *, size_t lane, const double *const c[],
                             const nevh_stepper *);
 /* A lane takes the constants that another has. */
@@ -21,7 +21,7 @@ void nevh__energy_lane_copy(nevh_energy *, size_t from, size_t to);
 /* The lane's next observation is its first. */
 void nevh__energy_restart(nevh_energy *, size_t lane);
 
-/* What theory says of the steps of that stepper, planned. */
+/* The energy error that theory predicts for the steps of that stepper, planned. */
 nevh_theory nevh__theory_of(const nevh_stepper *);
 
 #endif

@@ -17,8 +17,8 @@
 /* Below this part of the largest effect, H0 is no measure of the energy. */
 static const double cancelled = 1e-6;
 
-/* Where all effects of the start are below that part of what the motion's energies
-   are, they are small by chance. */
+/* Effects of the start are small by chance if all are below this part of the
+   energies of the motion. */
 static const double by_chance = 0.01;
 
 /* Energies that are so many times as large in the second half of the time are those
@@ -47,7 +47,7 @@ static bool values_of(motion *m, double t, const double y[], double to[]) {
     return !nevh__field_moving_terms(f, t, y, y + f->n, to);
 }
 
-/* Of terms that read momenta, less what they are at rest where that is finite. */
+/* The kinetic energy: terms that read momenta, less their values at rest if finite. */
 static double kinetic_of(motion *m, double t, const double y[]) {
     nevh_field *f = m->values;
     memcpy(m->still, y, f->n * sizeof *y);
@@ -87,7 +87,7 @@ static void look(void *context, double t, double h, const double y[]) {
     m->energy[m->count++] = fmax(m->kinetic, range_of(m));
 }
 
-/* Whether any coordinate moved by more than its rounding, if one moved. */
+/* True if no coordinate moved, or if one moved by more than its rounding. */
 static bool is_resolved(const motion *m) {
     bool moved = false;
     for (size_t k = 0; k < m->values->n; k++) {
@@ -99,7 +99,7 @@ static bool is_resolved(const motion *m) {
     return !moved;
 }
 
-/* That of all states; 0 where it goes on growing. */
+/* The energy of all states; 0 if it keeps growing. */
 static double energy_of(const motion *m) {
     double last = m->count ? m->energy[m->count - 1] : 0, half = last;
     for (size_t i = m->count; i-- > 0;)
@@ -160,7 +160,7 @@ static double orbit_energy(nevh_field *values, double t, const double q[],
     return energy;
 }
 
-/* That of the orbit, which does not depend on the run. */
+/* The energy of the orbit, which does not depend on the run. */
 static double typical(const nevh_energy *e, size_t lane) {
     if (e->typical[lane] < 0) {
         const double *start = e->start + lane * 2 * e->n;

@@ -55,8 +55,8 @@ static double transform(const analysis *a, double w, double *slope) {
     return re * re + im * im;
 }
 
-/* Where the square is largest between two places: its slope falls through 0
-   there.  NAN where it does not fall from one to the other. */
+/* The maximum of the square between two frequencies: its derivative falls through 0
+   there. NAN if it does not fall from one to the other. */
 static double peak(const analysis *a, double low, double high) {
     double at_low, at_high, at_middle;
     transform(a, low, &at_low);
@@ -116,7 +116,7 @@ static double search(analysis *a) {
     return refine(a, fmax(w - unit, unit / 8), w + unit);
 }
 
-/* What is left after all lines but `but`. */
+/* The residual of all lines but `but`. */
 static void take_off(analysis *a, size_t but) {
     for (size_t k = 0; k < a->count; k++) {
         double t = time_of(a, k), sum = a->values[k] - a->mean;
@@ -342,8 +342,8 @@ static void share_errors(const analysis *a, nevh_spectral_line lines[]) {
         }
 }
 
-/* What is far below the largest line and not the same in both halves is what
-   rounding and differences of H do. */
+/* Leaves out lines far below the largest that differ between both halves: they come
+   from rounding and from differences of H. */
 static void leave_out_noise(const analysis *a, nevh_spectral_line lines[],
                             size_t *found) {
     static const double far_below = 1e-8, part = 0.125;

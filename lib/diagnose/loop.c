@@ -198,7 +198,7 @@ static int put(nevh_loop *l, nevh__queue *to, double from, double to_s,
     return NEVH_OK;
 }
 
-/* Of the box in one direction; 0 where rounding makes it. */
+/* The length of the box in one direction; 0 if it is rounding. */
 static double length(const nevh_loop *l, size_t i) {
     static const double rounding = 1e-13;
     double low = l->low[i], high = l->high[i];

@@ -126,7 +126,8 @@ static int carry_panels(inside *x) {
     return status;
 }
 
-/* Of those that are not certain to 1e-3, what is more certain so. */
+/* Replaces areas that are not certain to 1e-3 by those of the inside that are more
+   certain. */
 static void take_over(inside *x) {
     nevh_loop *l = x->loop;
     for (size_t i = 0; i < l->reach; i++) {

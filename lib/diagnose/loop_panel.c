@@ -52,7 +52,7 @@ static double product(const double a[], int na, const double b[], int nb) {
     return sum;
 }
 
-/* What the last coefficients of either may have in it. */
+/* The error that the last coefficients of either leave. */
 static double tail_of(const double a[], const double b[]) {
     double sum_a = 0, sum_b = 0;
     for (int k = 1; k < NEVH__NODES; k++) {
@@ -139,7 +139,7 @@ static void widen(double *low, double *high, double x) {
     *high = fmax(*high, x);
 }
 
-/* Where the curve is at all. */
+/* Measures the extent of the curve. */
 bool nevh__loop_measure(nevh_loop *l, nevh__panel *at, size_t time) {
     (void)at;
     for (size_t k = 0; k < l->n; k++)

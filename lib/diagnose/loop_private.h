@@ -54,11 +54,11 @@ typedef bool (*nevh__loop_look)(nevh_loop *, nevh__panel *, size_t time);
 int nevh__loop_follow(nevh_loop *, nevh__panel *, nevh__loop_look);
 /* States of the panel's nodes at the beginning. */
 int nevh__loop_place(nevh_loop *, const nevh__panel *);
-/* Of a series over a panel from its values, less `from`. */
+/* Expands values over a panel, less `from`, in a series. */
 void nevh__loop_expand(const nevh_loop *, const double value[], double from,
                        double coefficient[]);
-/* What to look for: where the curve is; areas, errors and states; the same up to
-   the first time at which the panel must be cut. */
+/* Functions for nevh__loop_follow: the extent of the curve; areas, errors and
+   states; the same up to the first time at which the panel must be cut. */
 bool nevh__loop_measure(nevh_loop *, nevh__panel *, size_t time);
 bool nevh__loop_keep(nevh_loop *, nevh__panel *, size_t time);
 bool nevh__loop_keep_smooth(nevh_loop *, nevh__panel *, size_t time);

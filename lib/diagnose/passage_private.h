@@ -21,8 +21,8 @@ bool nevh__passage_init(nevh__passage *, const nevh_system *);
 void nevh__passage_clear(nevh__passage *);
 void nevh__passage_keep(nevh__passage *, double t, const double q[],
                         const double p[]);
-/* Whether the straight line from the last state to this one goes through a pole
-   of a term; the first one is kept. */
+/* Tests whether the straight line from the last state to this one passes a pole of
+   a term; keeps the first one. */
 void nevh__passage_look(nevh__passage *, double t, const double q[],
                         const double p[]);
 

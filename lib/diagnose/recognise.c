@@ -18,7 +18,7 @@
 
 enum { STATES = 1024, PASSES = 3, MOST_INSTANCES = 10000 };
 
-/* Of what is left over, in units of the size of the gradient there. */
+/* Bounds of the residual, in units of the size of the gradient there. */
 static const double exact_rounding = 64 * DBL_EPSILON;
 static const double difference_rounding = 1e-10;
 static const double margin = 1.25; /* around the region of the orbit */
@@ -40,8 +40,8 @@ typedef struct {
     long double *dq, *dp; /* the same, or with more digits */
 } trial;
 
-/* Where states are taken: of n = 1, q around `middle` and, every other one,
-   between low and high; else |q| between low and high. */
+/* The region of the sampled states: for n = 1, q around `middle` and, every other
+   one, between low and high; else |q| between low and high. */
 typedef struct {
     double middle, half, low, high, p;
 } region;
@@ -99,7 +99,7 @@ static bool sample(trial *b, const region *r) {
     return true;
 }
 
-/* What is left over, its root mean square in units of `size`. */
+/* The residual, its root mean square in units of `size`. */
 typedef struct {
     double most, squares;
     size_t count;

@@ -29,7 +29,7 @@ static void share(size_t n, const size_t kind[], double scale[]) {
         scale[k] = scale[kind[k]];
 }
 
-/* Of the coordinates, or of the momenta. */
+/* Scales of the coordinates, or of the momenta. */
 static void scale_half(const nevh_reference *r, const double low[],
                        const double high[], double scale[]) {
     static const double rounding = 1e-12; /* of the largest value */
@@ -114,8 +114,8 @@ static double distance(const nevh_reference *r, const double a[],
     return most;
 }
 
-/* Of long double arithmetic; here it may be that of double whatever
-   LDBL_EPSILON says: under valgrind, or where the processor is told so. */
+/* The rounding of long double arithmetic, which may be that of double whatever
+   LDBL_EPSILON says: under valgrind, or if the processor is set so. */
 static double long_rounding(void) {
     volatile long double one = 1, next = one + LDBL_EPSILON;
     return next > one ? (double)LDBL_EPSILON : DBL_EPSILON;
@@ -137,8 +137,8 @@ static nevh__exact_solution spoiled(const nevh_reference *r, int constant,
     return e;
 }
 
-/* What the doubt in the constants, and rounding on the way from them to a
-   phase, do to the state; no less than the rounding of the state itself. */
+/* The effect on the state of the uncertainty of the constants, and of rounding on
+   the way from them to a phase; at least the rounding of the state itself. */
 static double doubted(const nevh_reference *r) {
     static const double roundings = 4;
     double part = fmax(r->exact->doubt, roundings * long_rounding());
@@ -404,7 +404,7 @@ double nevh_reference_own_range(const nevh_reference *r, size_t k) {
     return k < 2 * r->n ? r->high[k] - r->low[k] : NAN;
 }
 
-/* By what a time there may be off, it is still inside. */
+/* Refuses a time outside, apart from its rounding. */
 static int check_time(nevh_reference *r, double elapsed) {
     double forward = r->t1 > r->t0 ? 1 : -1, span = r->t1 - r->t0;
     double slack = 2 * DBL_EPSILON * fmax(fabs(r->t0), fabs(r->t1));

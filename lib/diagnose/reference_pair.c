@@ -119,8 +119,8 @@ typedef struct {
     double before, since;
 } octave;
 
-/* Whether the orbits have separated.  At the very beginning little differences
-   are large parts of a motion that has hardly begun: these shrink. */
+/* True if the orbits have separated.  At the very beginning small differences are
+   large parts of a motion that has hardly begun: these shrink. */
 static bool have_separated(octave *o, double step, double difference,
                            double most) {
     if (exp2(floor(log2(step))) == step) {

@@ -5,7 +5,7 @@
 
 #include "diagnose/reference_private.h"
 
-/* What may be spent, in gradients and in evaluations of terms. */
+/* The work limits, in gradients and in evaluations of terms. */
 static const double nevh__most_gradients = 1e7, nevh__most_values = 2e8;
 
 /* Two orbits side by side. */
@@ -21,7 +21,7 @@ typedef struct {
     nevh__watch watch;
 } nevh__pair;
 
-/* How far both came. */
+/* The progress of both. */
 typedef struct {
     int status;     /* of the last step */
     double h;       /* of the coarse one */

@@ -49,7 +49,7 @@ struct nevh_reference {
     bool walking;
 };
 
-/* Where H changes as no derivative of it says. */
+/* A change of H that its derivatives do not explain. */
 typedef struct {
     bool found;    /* false: it changes within a step, but does not jump */
     double by;     /* how much */
@@ -57,7 +57,7 @@ typedef struct {
     size_t effect; /* which of the system's does most of it */
 } nevh__jump;
 
-/* Whether a run keeps H, where H is to be kept. */
+/* The test that a run keeps H, if it should. */
 typedef struct {
     nevh_field *field; /* for values; NULL: it is not */
     size_t n;
@@ -81,20 +81,20 @@ bool nevh__watch_step(nevh__watch *, const double coarse[],
                       const double fine[]);
 /* Says that H jumps, near that time. */
 int nevh__watch_fail(nevh_reference *, const nevh__jump *, double t);
-/* Of an exact solution; adds to its own error. */
+/* Tests an exact solution; adds to its own error. */
 int nevh__watch_exact(nevh_reference *);
-/* What the change of H adds to the own error of the run: where that of the runs
-   explains it, 0. */
+/* The part of the run's own error that the change of H adds; 0 if the error of the
+   runs explains it. */
 double nevh__watch_error(const nevh__watch *);
 
-/* Whether the orbit is chaotic, by the indicators of nevh_chaos_find over the time
+/* True if the orbit is chaotic, by the indicators of nevh_chaos_find over the time
    of the reference, or eight times that; `exponent` becomes that of chaos.
    growth  out: of a displacement until `reached`; 0 where it is not known; NULL:
            not wanted */
 bool nevh__reference_is_chaotic(nevh_reference *, double reached,
                                 double *growth);
 
-/* Of the own error, in ranges. */
+/* The own error that is wanted, in ranges. */
 static const double nevh__reference_wanted = 1e-15;
 
 /* Bytes of checkpoints, and of remembered states. */
@@ -110,7 +110,7 @@ void nevh__reference_series_free(struct nevh__reference_series *); /* NULL */
 /* The state so long after its start. */
 void nevh__reference_series_state(const nevh_reference *, long double elapsed,
                                   long double state[]);
-/* Of any reference, with the digits that it has.
+/* The state of any reference, with all its digits.
    returns  as nevh_reference_state_after */
 int nevh__reference_find(nevh_reference *, long double elapsed,
                          long double state[]);
@@ -121,7 +121,7 @@ int nevh__reference_walk(nevh_reference *, double elapsed, double q[],
                          double p[]);
 void nevh__reference_widen(const nevh_reference *, double low[], double high[],
                            const double state[]);
-/* What differences of states are measured in. */
+/* The units in which differences of states are measured. */
 void nevh__reference_scale(const nevh_reference *, const double low[],
                            const double high[], double scale[]);
 

@@ -25,8 +25,8 @@ static const double late = 0.3; /* of what may be spent, to try shorter steps */
 static const double shorter = 0.4; /* the next step, where one is too long */
 enum { MOST_RUNS = 16 };
 
-/* Where the step is allowed to be no longer, that is not shorter than can be
-   afforded: `cost` is what a pair of steps spends. */
+/* The longest step allowed, but none shorter than can be afforded; cost: of a pair
+   of steps, as a part of the limit. */
 static double longest_step(const nevh_reference *r, double cost) {
     static const double fewest = 128, part = 0.1; /* of what may be spent */
     double span = fabs(r->t1 - r->t0), longest = span / fewest;
@@ -155,11 +155,12 @@ static nevh_reference_end explain(nevh__pair *b, const nevh__pair_outcome *o,
     return chaos ? NEVH_REFERENCE_CHAOS : NEVH_REFERENCE_SENSITIVE;
 }
 
-/* What is known from the runs so far. */
+/* The results of the runs so far. */
 typedef struct {
     double error; /* of the last that came to the end */
-    /* Of the others, of those that failed [1] and those that did not [0]: what
-       was reached at most, and how many, in turn, came no further. */
+    /* For the other runs, those that failed [1] and those that did not [0]: the
+       largest time reached, and the number of consecutive runs that came no
+       further. */
     double reached[2];
     int stalled[2];
 } progress;
@@ -216,7 +217,7 @@ static double whole_step(const nevh__pair *b, const nevh__pair_outcome *o,
            fmin(part, 0.8 * (1 - nevh__pair_spent(b)));
 }
 
-/* Whether that was the last run; `cost` is its own. */
+/* True if that was the last run; `cost` is its own. */
 static bool is_enough(nevh__pair *b, const nevh__pair_outcome *o, double cost,
                       progress *p) {
     if (o->status == NEVH_ENOMEM || nevh__pair_spent(b) >= 1)

@@ -65,13 +65,13 @@ static double work_of(const chain *c) {
            NEVH__FINE(nevh__series_orbit_work)(&c->coarse);
 }
 
-/* Of as many series where they are thin. */
+/* The memory of as many thin series. */
 static double bytes_of(const nevh_reference *r, double series) {
     return series * (double)((TIMES + 2 * r->n) * sizeof(long double));
 }
 
-/* What is narrow, a series sees from some ten times its width away: it is not to
-   be passed where the runs that are compared would find it. */
+/* The longest series.  A series detects a narrow part of H from about ten times its
+   width; it must not pass one that the compared runs would find. */
 static double longest(const nevh_reference *r, const chain *c) {
     static const double steps = 8, fewest = 128;
     double span = fabs(r->t1 - r->t0);
@@ -213,7 +213,8 @@ static void look(nevh_reference *r, chain *c) {
     }
 }
 
-/* How far apart both are, in ranges up to there; counted where they go on. */
+/* The largest difference of both, in ranges up to there; counted where they
+   continue. */
 static double compare(nevh_reference *r, chain *c) {
     const nevh__wide *state = c->fine.state; /* where the series begins */
     double most = 0;
@@ -229,7 +230,7 @@ static double compare(nevh_reference *r, chain *c) {
     return most;
 }
 
-/* Whether both can come to the end. */
+/* True if both can be continued to the end. */
 static bool affordable(const nevh_reference *r, const chain *c) {
     double part = (double)(c->fine.t - r->t0) / (c->until - r->t0);
     double series = (double)c->count / fmax(part, 1e-300);
@@ -241,7 +242,8 @@ static bool affordable(const nevh_reference *r, const chain *c) {
            (series * work_of(c) <= most_work || r->integrator == nevh_taylor);
 }
 
-/* Where the last series begins that was not too far from the other run. */
+/* Ends the reference at the beginning of the last series that was close to the
+   other run. */
 static int part_at(nevh_reference *r, chain *c) {
     c->parts = true;
     c->until = r->t0 + (double)c->kept[(c->count - 2) * c->each];
@@ -288,7 +290,7 @@ static int run(nevh_reference *r, chain *c) {
     return status;
 }
 
-/* Whether the solution ends where series have got too short. */
+/* Finds whether the solution ends at the time at which series got too short. */
 static void find_end(nevh_reference *r, double t) {
     r->ends =
         nevh_solution_ends(r->system, r->t0, r->t1, r->start, r->start + r->n);
@@ -298,7 +300,7 @@ static void find_end(nevh_reference *r, double t) {
                    t);
 }
 
-/* By that tolerance; NULL, with the reason in the report.
+/* A series run of that tolerance; NULL, with the reason in the report.
    first  a coarser one, or NULL */
 static chain *chain_new(nevh_reference *r, double tolerance,
                         const chain *first) {
@@ -346,7 +348,7 @@ static double error_of(const nevh_reference *r, const chain *c) {
     return error;
 }
 
-/* Of the first runs, which have parted. */
+/* Sets the horizon from the first runs, which have separated. */
 static void end_at(nevh_reference *r, const chain *c) {
     double reached = c->until - r->t0, parted = 0;
     for (size_t i = 1; i < c->count; i++)

@@ -41,7 +41,7 @@ static uint64_t key_of(double t) {
     return ~bits; /* 0 would be not a number */
 }
 
-/* Where the time is, or is to be. */
+/* The slot of a time, or a free one for it. */
 static size_t slot_of(const nevh__memo *m, uint64_t key) {
     size_t i = (size_t)((key * 0x9e3779b97f4a7c15u) >> 32) & (m->slots - 1);
     while (m->keys[i] && m->keys[i] != key)

@@ -108,8 +108,8 @@ static void find_jump(nevh__watch *w, const double after[]) {
     };
 }
 
-/* By how much H changes where each variable is rounded the other way: of one that
-   is small beside its own offset, by more than its digits tell. */
+/* The change of H by rounding each variable the other way: it is larger than the
+   variable's digits suggest if the variable is small beside its own offset. */
 static double find_rounding(nevh__watch *w, const double z[]) {
     double sum = 0, size;
     memcpy(w->between, z, 2 * w->n * sizeof *z);

@@ -48,7 +48,7 @@ void nevh_spectral_samples_restart(nevh_spectral_samples *s) {
     s->full = false;
 }
 
-/* Those of the window (1 + cos(pi x))^3, without their mean. */
+/* The spectrum with the window (1 + cos(pi x))^3, without the mean. */
 static void transform(nevh_spectral_samples *s) {
     double mean = 0, last = (double)(s->count - 1);
     for (size_t k = 0; k < s->count; k++)
@@ -61,8 +61,7 @@ static void transform(nevh_spectral_samples *s) {
     gsl_fft_real_radix2_transform(s->power, 1, s->size);
 }
 
-/* Whether half as many samples tell the same: nothing is in the faster half of
-   the spectrum. */
+/* True if half as many samples suffice: the faster half of the spectrum is empty. */
 static bool are_dense(nevh_spectral_samples *s) {
     static const double nothing = 1e-6; /* of the largest line */
     double slow = 0, fast = 0;

@@ -13,16 +13,17 @@ static const double most = 32, least = 4;
 static const double usual = 8;
 /* Seconds that nobody minds for a verdict to be confirmed, and lengths. */
 static const double cheap = 0.1, confirmed = 128;
-/* Those that what is open is worth beyond that. */
+/* The same for open verdicts, which may take longer. */
 static const double quick = 1, open = 2048;
 
-/* Of the energies that the run itself met: what is driven has left its orbit. */
+/* Over the energies that the run itself met: a driven orbit beyond this has left
+   its own. */
 static const double grown = 4;
-/* Of the limit: errors of a run that is not unstable. */
+/* Part of the limit: larger errors may be those of an unstable run. */
 static const double much_smaller = 0.01;
 
-/* What a gradient costs of many stages that are taken side by side, a single
-   one being 1. */
+/* The cost of a gradient among many stages that are taken side by side, over that
+   of a single one. */
 static double side_by_side(const nevh_integrator *scheme) {
     static const double cheapest = 0.15;
     double stages = nevh_integrator_sweep_gradients(scheme);
@@ -56,9 +57,9 @@ typedef struct {
     nevh_energy_report report;
 } longer_run;
 
-/* That the error is level over so many lengths: a random walk would be above
-   that many times the run's own error by now, half of the time at least.  Or the
-   longer run explored more, and is level since. */
+/* True if the error is level over so many lengths: a random walk would be above
+   that many times the run's own error by now, at least half of the time.  Also true
+   if the longer run explored more, and is level since. */
 static bool is_confirmed(const longer_run *l, double times) {
     static const double slow = 2.5, level = 1.3, few = 16, many = 256;
     static const double ending = 0.2, ended_before = 0.5; /* powers of t */
@@ -79,7 +80,7 @@ static bool has_ended(const nevh_energy_report *r, double times) {
            r->rate[1] < slow && times >= few;
 }
 
-/* By as much as was seen, where there will be no more. */
+/* The verdict on as much as was run, if there will be no more. */
 static nevh_verdict judge_last(const longer_run *l, double times) {
     const nevh_energy_report *r = &l->report;
     nevh_verdict verdict = nevh_energy_verdict(r, INFINITY);
@@ -111,8 +112,8 @@ static nevh_verdict judge_before(const nevh_energy_report *own,
     return level ? NEVH_BOUNDED : NEVH_UNDECIDED;
 }
 
-/* Of a driven run that is left undecided because its motion grows when it is
-   continued: a line of its own. */
+/* The verdict on a driven run that stays undecided because its motion grows: DRIFTS
+   if the error of the run itself is a line. */
 static nevh_verdict judge_own(const nevh_energy_report *own,
                               const nevh_energy_report *longer) {
     static const double straight = 0.95;
@@ -155,7 +156,7 @@ static double lengths(const nevh_judged_run *r) {
                 lengths_in(fmin(allowed, quick), r, open));
 }
 
-/* That an error which is level over the run is asked for. */
+/* The lengths over which a level error must be confirmed. */
 static double confirming(const nevh_judged_run *r) {
     double enough = lengths_in(cheap, r, confirmed);
     return r->regular ? enough : fmax(enough, lengths_in(quick, r, least));
@@ -184,7 +185,7 @@ static int run(const nevh_judged_run *r, nevh_stepper *s, longer_run *l,
     return status;
 }
 
-/* What is left open is judged by as much as was seen: there is no more. */
+/* Judges a run that is still open by as much as was run. */
 static void end(longer_run *l, int status) {
     nevh_energy_report *r = &l->report;
     if (l->decided)
@@ -199,13 +200,14 @@ static void end(longer_run *l, int status) {
         r->verdict = NEVH_UNDECIDED;
 }
 
-/* Of a run that met larger energies than before: the error relative to them. */
+/* For a run that met larger energies than before: true if the error relative to
+   them is level. */
 static bool is_carried(const nevh_energy_report *r) {
     static const double level = 2;
     return r->relative[1] <= level * r->relative[0];
 }
 
-/* What only rounding shows is no more than that. */
+/* True if the error is no more than rounding explains. */
 static bool is_rounding(const nevh_energy_report *own) {
     static const double small = 1e-3;
     return own->theory != NEVH_THEORY_LOSES && own->max <= own->rounding &&

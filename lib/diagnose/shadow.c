@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of Hp.Hq, Hp.Hqq Hp, Hq.Hpp Hq and Hq.Hpq Hp. */
+/* The coefficients of Hp.Hq, Hp.Hqq Hp, Hq.Hpp Hq and Hq.Hpq Hp. */
 typedef struct {
     const nevh_integrator *const *scheme;
     int order;
@@ -105,7 +105,7 @@ static int check_time(nevh_shadow *s, const nevh_system *system,
                       timed_effect(system));
 }
 
-/* What is to be found out of H: lengths, and whether it changes with t. */
+/* Finds the properties of H: lengths, and whether it depends on t. */
 static int plan_probe(nevh_shadow *s, const nevh_system *system,
                       const nevh_options *o) {
     nevh_probe *probe = nevh_probe_new(system, o);
@@ -278,7 +278,7 @@ int nevh_shadow_value(nevh_shadow *s, const double q[], const double p[],
     return status;
 }
 
-/* Whether t is that many steps of h from the first state. */
+/* True if t is that many steps of h from the first state. */
 static bool is_whole(const nevh_shadow *s, size_t step, double t) {
     static const double part = 1e-3;
     double away = t - s->t_start - (double)(step - s->step_start) * s->h;

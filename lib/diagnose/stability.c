@@ -15,8 +15,8 @@
 static const double pi = 3.14159265358979323846;
 /* Beyond that many radians a step no scheme is asked; the grid there.  */
 static const double farthest = 16, spacing = 1. / 64;
-/* What is growth, in a step: of a matrix of determinant 1 the root of a difference
-   that rounds; of others, far above the rounding. */
+/* The growth in a step that is instability: for a matrix of determinant 1, the root
+   of a difference that rounds; for others, far above the rounding. */
 static const double growing_kept = 1e-5, growing_lost = 1e-11;
 
 typedef struct {
@@ -77,8 +77,8 @@ static void end(const oscillator *o) {
     nevh_system_free(o->system);
 }
 
-/* Of a multistep method: what one more step does after so many that nothing is
-   left of how it began. */
+/* For a multistep method: one more step, after so many that the effect of the
+   starting procedure has decayed. */
 static bool step_late(const oscillator *o, double x, double q[2], double p[2]) {
     enum { EARLY = 64 };
     double a[2], b[2];
@@ -143,7 +143,7 @@ static double tip(const oscillator *o, double a, double b) {
     return (a + b) / 2;
 }
 
-/* Where growth begins between a, stable, and b; next to 0 that is 0. */
+/* The onset of growth between a, which is stable, and b; next to 0 it is 0. */
 static double bisect(const oscillator *o, double a, double b) {
     enum { HALVINGS = 64 };
     for (int i = 0; i < HALVINGS && b - a > 1e-9 * b; i++) {
@@ -156,8 +156,8 @@ static double bisect(const oscillator *o, double a, double b) {
     return a;
 }
 
-/* Whether growth that is seen from x on sets in as a power of the step, so that
-   there is some at every step: beyond a limit it grows far faster. */
+/* True if growth seen from x on sets in as a power of the step, so that every step
+   has some: beyond a limit it grows far faster. */
 static bool grows_from_nothing(const oscillator *o, double x) {
     static const double beyond = 1.1, faster = 10; /* above its 20th power */
     return excess(o, beyond * x) < faster * o->growing;
@@ -181,7 +181,7 @@ static double search(const oscillator *o) {
     return INFINITY;
 }
 
-/* Of methods with a space of their own: the largest of an orbit in it. */
+/* For methods with a space of their own: the largest point of an orbit in it. */
 static double longest(const oscillator *o, double x) {
     enum { STEPS = 500 };
     double q[2] = {1, 0}, p[2] = {0, 1}, most = 0;
@@ -201,7 +201,7 @@ static double search_extended(const oscillator *o) {
     return INFINITY;
 }
 
-/* Whether its steps are matrices. */
+/* True if the scheme's steps are matrices. */
 static bool is_linear(const nevh_integrator *scheme) {
     return scheme && !nevh_integrator_needs_tolerance(scheme) &&
            !nevh_integrator_own_time(scheme) &&

@@ -4,7 +4,7 @@
 #include "expression/tape_private.h"
 #include "run/stepper_private.h"
 
-/* Whether a term that is a formula has kinks or jumps in coordinates or momenta. */
+/* True if a term that is a formula has kinks or jumps in coordinates or momenta. */
 static bool is_rough(const nevh_system *s) {
     for (size_t i = 0; i < s->n_terms; i++) {
         const nevh_term *term = &s->terms[i]->decl;

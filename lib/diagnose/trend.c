@@ -71,7 +71,7 @@ void nevh__trend_multiply(nevh__trend *s, double factor) {
     }
 }
 
-/* Of some bins together. */
+/* The union of some bins. */
 static nevh__bin join(const nevh__trend *s, size_t from, size_t to) {
     nevh__bin all = s->bin[from];
     for (size_t i = from + 1; i < to; i++) {

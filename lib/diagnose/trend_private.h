@@ -29,8 +29,8 @@ typedef struct {
 void nevh__trend_add(nevh__trend *, double t, double e, double met);
 /* The same series, errors and energies times a factor. */
 void nevh__trend_multiply(nevh__trend *, double factor);
-/* What the report says of the series, from samples to straightness, rate, least,
-   gone, grown and relative. */
+/* Fills the report's members on the series, from samples to straightness, rate,
+   least, gone, grown and relative. */
 void nevh__trend_report(const nevh__trend *, nevh_energy_report *);
 
 #endif

@@ -33,7 +33,7 @@ static void values(const eight *e, const double z[], double h[]) {
                       z + decl->nq * LANES, e->c, h, one);
 }
 
-/* By one variable, from values. */
+/* The derivative by one variable, from values. */
 static void slope_by(const eight *e, double z[], size_t k, double g[]) {
     double *row = z + k * LANES, kept[LANES], h[LANES];
     memcpy(kept, row, sizeof kept);

@@ -13,7 +13,7 @@ static const double straight =
     0.95; /* of a line that theory knows nothing of */
 static const double lasting =
     0.3; /* of the largest error: is never made good */
-/* Of the limit: above, steps may not resolve the orbit. */
+/* Part of the limit: steps with larger errors may not resolve the orbit. */
 static const double coarse = 0.03;
 /* Lengths of the run that confirm: that growth has ended, that coarse steps
    keep the energy, that growth lasts. */
@@ -122,7 +122,7 @@ static nevh_verdict judge_kept(const nevh_energy_report *r, double times) {
     return is_level(r) ? NEVH_DRIFTS : judge_growth(r);
 }
 
-/* By the errors alone. */
+/* The verdict from the errors alone. */
 static nevh_verdict judge_alone(const nevh_energy_report *r) {
     if (is_level(r))
         return is_line(r) ? NEVH_DRIFTS : NEVH_BOUNDED;

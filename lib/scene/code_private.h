@@ -5,7 +5,7 @@
 
 #include "scene/scene_private.h"
 
-/* What a file defines: functions of one instance, as <nevh/scene.h> says. */
+/* The functions that a file defines, of one instance, as <nevh/scene.h> says. */
 typedef double (*nevh__code_value)(double t, const double q[], const double p[],
                                    const double c[]);
 typedef void (*nevh__code_gradient)(double t, const double q[],

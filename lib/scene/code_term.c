@@ -51,7 +51,7 @@ static void gradient(size_t width, const double t[], const double q[],
     }
 }
 
-/* What a term reads, in the order of the list. */
+/* The variables of a term, in the order of the list. */
 typedef struct {
     size_t *q, *p, nq, np, nc; /* n each */
     double *c;
@@ -198,7 +198,7 @@ static bool cut(nevh_scene *s, nevh__scene_model *m, const nevh__piece *value,
                             at + bytes - 1, after);
 }
 
-/* Where a file is: beside the scene. */
+/* The path of a file beside the scene. */
 static char *path_of(const nevh_scene *s, const char *name) {
     const char *slash = strrchr(s->name, '/');
     if (name[0] == '/' || !slash)

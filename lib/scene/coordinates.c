@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Whether a statement is p_NAME = ... or v_NAME = ... */
+/* True if a statement is p_NAME = ... or v_NAME = ... */
 static bool is_motion(const nevh__statement *statement) {
     const char *name = statement->head.name;
     return (name[0] == 'p' || name[0] == 'v') && name[1] == '_' && name[2];
@@ -256,7 +256,7 @@ static bool fail_start(nevh_scene *s, nevh__scene_model *m,
         one->head.name, known, count);
 }
 
-/* Where a name of an array is given without an index, all of it is meant. */
+/* The name of an array without an index stands for all of it. */
 static bool start_range(nevh_scene *s, const nevh__scene_model *m,
                         const nevh__statement *one, size_t *from, size_t *to) {
     size_t count, first;

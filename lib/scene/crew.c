@@ -278,8 +278,8 @@ static void run_group(nevh__worker *w, const double varied[], bool apart) {
     nevh__variant_free(&w->variant);
 }
 
-/* Whether two members of the list have the same parameters; else which comes
-   first: less than 0 where a does. */
+/* 0 if two members of the list have the same parameters; less than 0 if a comes
+   first. */
 static int compare(const nevh__worker *w, size_t a, size_t b) {
     const nevh__scene_ensemble *e = w->sweep->ensemble;
     for (size_t i = 0; i < e->n_varied; i++) {
@@ -300,7 +300,7 @@ static bool same_group(const nevh__worker *w, size_t a, size_t b) {
     return true;
 }
 
-/* By insertion: chunks are short, and mostly in order. */
+/* Insertion sort: chunks are short, and mostly in order. */
 static void sort(nevh__worker *w) {
     for (size_t i = 0; i < w->count; i++) {
         size_t k = i;
@@ -462,7 +462,7 @@ static int run(nevh_sweep *s, nevh_wanted_fn wanted, nevh_sweep_fn tell_fn,
                : NEVH_OK;
 }
 
-/* Of a sweep that could not be planned. */
+/* Returns the status of a sweep that could not be planned. */
 static int begin(nevh_sweep *s) {
     if (s->report.status && s->report.status != NEVH_STOPPED)
         return s->report.status;

@@ -55,7 +55,7 @@ void nevh__lane_members_free(nevh__lane_members *l);
 /* Makes the ensemble, where the sweep's members have one form. */
 void nevh__lane_members_open(nevh__worker *w);
 
-/* Whether the group should go by lane, and is no less than what is asked for. */
+/* True if the group should run by lane, and is large enough for that. */
 bool nevh__lane_members_pay(const nevh__worker *w);
 
 /* Adds the group to the queue. */

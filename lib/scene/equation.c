@@ -39,7 +39,7 @@ size_t nevh_scene_equation_count(const nevh_scene *s) {
     return i;
 }
 
-/* What was set takes the place of what is written. */
+/* The statement of a value that was set, in place of the one written. */
 static const nevh__statement *given(const nevh_scene *s,
                                     const nevh__statement *one) {
     const nevh__statement *set = one->section == NEVH__PARAMETERS

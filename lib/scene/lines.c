@@ -20,8 +20,8 @@ static size_t count_lines(const char *text, size_t bytes) {
     return count;
 }
 
-/* What moves a terminal's cursor or changes its colours, and NUL.  A form feed
-   stands between pages of some files. */
+/* True for NUL, and for characters that move a terminal's cursor or change its
+   colours.  A form feed separates pages in some files. */
 static bool is_control(uint32_t code) {
     return (code < ' ' && code != '\t' && code != '\f') ||
            (code >= 0x7F && code < 0xA0);

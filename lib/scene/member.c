@@ -16,7 +16,7 @@ static int refuse(nevh_scene *s, int status, const char *why) {
     return status;
 }
 
-/* Whether its parameters change the start and nothing else. */
+/* Fails unless the member's parameters change only the start. */
 static int compare(nevh_sweep *s, const nevh__variant *x,
                    nevh__report *report) {
     nevh__variant own;

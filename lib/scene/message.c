@@ -27,7 +27,7 @@ static size_t step(const char *text) {
     return bytes ? bytes : 1;
 }
 
-/* What is safe to print in its place. */
+/* The text to print for a character: "?" for one that is not safe. */
 static const char *shown(const char *at) {
     uint32_t code;
     bool control = (unsigned char)*at < ' ' && *at != '\t';

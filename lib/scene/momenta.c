@@ -41,7 +41,7 @@ typedef struct {
     gsl_vector *u, *moved, *f, *f_moved;
 } search;
 
-/* How far the velocity of a row is off, over its scale. */
+/* The deviation of a row's velocity, over its scale. */
 static double offset(const search *s, size_t j) {
     size_t k = s->row[j];
     double wanted = s->m->v[k], rest = 1 - s->part;
@@ -124,7 +124,7 @@ static void iterate(search *s) {
     }
 }
 
-/* What to multiply a momentum by; 1 where that is not known. */
+/* The factor for a momentum; 1 if it is not known. */
 static double factor_of(double wanted, double has) {
     double factor = wanted / has;
     if (wanted == 0 || has == 0 || !isfinite(factor))
@@ -172,7 +172,7 @@ static void choose_units(search *s) {
     }
 }
 
-/* How far the velocity of a row is off where its momentum is p. */
+/* The deviation of a row's velocity at the momentum p. */
 static double offset_at(search *s, size_t j, double p) {
     s->p[s->row[j]] = p;
     measure(s);
@@ -341,8 +341,8 @@ static int solve_coupled(search *s) {
     return NEVH_OK;
 }
 
-/* Whether the velocities are those of any momenta that are large enough: then
-   they are a limit, which none reaches.  Squares of such may overflow. */
+/* True if all momenta that are large enough give these velocities, which are then a
+   limit that no momentum reaches.  Squares of such momenta may overflow. */
 static bool is_limit(search *s) {
     bool moved = false, same = true;
     double most = 0;

@@ -26,7 +26,7 @@ typedef struct {
     uint64_t stride; /* members until the next value, in a product */
     double a, b;     /* of range, normal, uniform */
     double *values;  /* of a list */
-    /* Of solve(LEFT = RIGHT, from A), where LEFT may be H. */
+    /* The sides of solve(LEFT = RIGHT, from A); LEFT may be H. */
     nevh__piece left, right;
     bool energy; /* it is */
 } nevh__varied;

@@ -41,7 +41,7 @@ typedef struct {
 enum { ORDER = 2, ROUNDS = 6, MOST_ROWS = 500 };
 static const double solved = 1e-32, enough = 1e-30;
 
-/* By how much velocities are off, over the largest of them. */
+/* The deviation of the velocities, over the largest of them. */
 static double measure(search *s) {
     size_t n = s->m->n;
     double most = 0, size = 0;
@@ -76,7 +76,7 @@ static double rescale(search *s) {
     return off;
 }
 
-/* How velocities change with momenta. */
+/* The derivatives of velocities by momenta. */
 static void find_slopes(search *s, gsl_matrix *slope, nevh__wide before[]) {
     size_t n = s->m->n;
     for (size_t i = 0; i < s->count; i++)
@@ -95,7 +95,7 @@ static void find_slopes(search *s, gsl_matrix *slope, nevh__wide before[]) {
     measure(s);
 }
 
-/* By Newton's iteration with one matrix. */
+/* Newton's iteration with one matrix. */
 static double iterate(search *s, gsl_matrix *slope, gsl_permutation *swaps,
                       gsl_vector *x) {
     int sign;

@@ -100,7 +100,7 @@ typedef struct {
     double value;
 } nevh__stop;
 
-/* What a model's numbers are with all their digits: n each. */
+/* The numbers of a model with all their digits: n each. */
 typedef struct {
     nevh__wide *q, *p, *v, *rates; /* rates: of the friction that is on */
     nevh__wide t_start, t_end;
@@ -172,7 +172,7 @@ bool nevh__scene_fail(nevh_scene *, int status, const nevh__piece *,
 /* At a column of a line, over `length` characters. */
 bool nevh__scene_fail_at(nevh_scene *, int status, const nevh__line *,
                          size_t column, size_t length, const char *text);
-/* What is wrong with a formula that is this piece. */
+/* Reports the error of a formula that is this piece. */
 bool nevh__scene_fail_formula(nevh_scene *, const nevh__piece *,
                               const nevh__formula_error *);
 bool nevh__scene_no_memory(nevh_scene *);
@@ -228,7 +228,7 @@ bool nevh__formula_values(nevh_scene *, nevh__formula[], size_t count,
 nevh__formula *nevh__formula_list(nevh_scene *, nevh__scene_model *,
                                   const nevh__piece *, size_t *count);
 
-/* What NAME[...] = ... gives to each element. */
+/* The shape of NAME[...] = ... */
 typedef struct {
     bool array;
     size_t count; /* at least 1 */
@@ -241,7 +241,7 @@ bool nevh__head_shape(nevh_scene *, const nevh__scene_model *,
 bool nevh__head_values(nevh_scene *, nevh__scene_model *,
                        const nevh__statement *, const nevh__piece *value,
                        size_t count, double values[], nevh__wide wide[]);
-/* What a parameter was set to from outside, or NULL. */
+/* The assignment of a parameter from outside, or NULL. */
 const nevh__statement *nevh__scene_assignment(const nevh_scene *,
                                               const char *name);
 /* A bound of a range. */
@@ -261,7 +261,7 @@ bool nevh__head_plain(nevh_scene *, const nevh__statement *);
 bool nevh__piece_call(nevh_scene *, nevh__pool *, const nevh__piece *,
                       const char *name, nevh__piece **arguments, size_t *count);
 
-/* Of elements(...): a coordinate and its velocity, `count` of an array. */
+/* elements(...): a coordinate and its velocity, `count` of an array. */
 bool nevh__is_elements(const nevh__piece *);
 bool nevh__elements_values(nevh_scene *, nevh__scene_model *,
                            const nevh__statement *, const nevh__piece *value,
@@ -294,7 +294,7 @@ const char *nevh__effect_not_finite(const nevh_system *, double t,
                                     const double q[], const double p[],
                                     double buffer[]);
 
-/* Whether a scene may be asked; its last failure is forgotten then. */
+/* False if a scene cannot be used; else forgets its last failure. */
 bool nevh__scene_begin(nevh_scene *);
 
 /* Which effects there are and which are on. */

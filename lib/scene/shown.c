@@ -163,7 +163,7 @@ bool nevh__model_shown(nevh_scene *s, nevh__scene_model *m) {
            nevh__model_crossings(s, m);
 }
 
-/* Whether something has that name: t, energy, or what a section names. */
+/* True if the name is t, energy, or that of a value in a section. */
 static bool is_shown(const nevh_scene *s, const nevh__scene_model *m,
                      const char *name) {
     for (size_t i = 0; i < s->n_statements; i++)

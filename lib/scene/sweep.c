@@ -72,7 +72,7 @@ static int take_outcomes(nevh_sweep *s) {
     return check_names(s);
 }
 
-/* Of the scene as it is: refusals that all members would meet. */
+/* Plans the scene as it is, to find refusals that all members would meet. */
 static int try(nevh_sweep *s) {
     const nevh__scene_model *m = s->scene->model;
     nevh_options o;

@@ -66,16 +66,16 @@ void nevh__variant_free(nevh__variant *);
    and looked at alike: they differ in where they start. */
 bool nevh__variants_alike(const nevh_sweep *, const nevh__variant *,
                           const nevh__variant *);
-/* Whether they are run and looked at alike, by systems of the same terms but
-   for numbers in formulas and for constants of instances. */
+/* True if both have the same run and outcomes, and systems of the same terms,
+   except for numbers in formulas and constants of instances. */
 bool nevh__variants_differ_in_numbers(const nevh_sweep *, const nevh__variant *,
                                       const nevh__variant *);
 /* The options of an ensemble of the variant's members.  room: 2n */
 nevh_ensemble_options nevh__variant_options(const nevh_sweep *,
                                             const nevh__variant *,
                                             nevh_options *, double room[]);
-/* Where a member starts: from the variant's own start and what is varied, in
-   which what is solved for is replaced by the solution.
+/* Finds a member's start from the variant's own start and the varied numbers; those
+   to solve for are replaced by the solution.
    returns  NEVH_OK or a status, with a message */
 int nevh__variant_start(const nevh_sweep *, const nevh__variant *,
                         double varied[], double q[], double p[], double v[],
@@ -100,8 +100,8 @@ void nevh__lane_form_see(const nevh_sweep *, nevh__lane_form *,
 /* Makes the system; false when memory is out. */
 bool nevh__lane_form_finish(nevh__lane_form *);
 void nevh__lane_form_free(nevh__lane_form *);
-/* Whether a variant differs from the base in such numbers alone; then its
-   constants are form->of_field. */
+/* True if a variant differs from the base only in such numbers; then its constants
+   are form->of_field. */
 bool nevh__lane_form_fits(const nevh_sweep *, nevh__lane_form *,
                           const nevh__variant *);
 

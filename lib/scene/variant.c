@@ -48,7 +48,7 @@ static bool make_quantity(nevh__variant *x, const char *left, const char *right,
     return true;
 }
 
-/* Of a coordinate that is an angle; 0 of other formulas. */
+/* The period of a coordinate that is an angle; 0 for other formulas. */
 static double period_of(const nevh__scene_model *m, const char *formula) {
     for (size_t k = 0; k < m->n; k++)
         if (strcmp(m->coordinate_names[k], formula) == 0)

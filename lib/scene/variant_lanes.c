@@ -30,7 +30,7 @@ bool nevh__lane_form_begin(nevh__lane_form *f, nevh__variant *base) {
     return room;
 }
 
-/* Whether number i of a term is the same in both. */
+/* True if number i of a term is the same in both. */
 static bool same_number(const nevh__lane_form *f, const nevh__variant *x,
                         size_t term, size_t i) {
     const double *a, *b;

@@ -36,7 +36,7 @@ static void gather(const double from[], const size_t indices[], size_t each,
     }
 }
 
-/* What a block of instances reads, and room for what comes of them. */
+/* The variables of a block of instances, and room for its results. */
 typedef struct {
     double *t, *q, *p, *c, *result;
 } block;
@@ -70,7 +70,7 @@ static double difference(const nevh_term *decl, double t, const double q[],
     return (8 * (h[2] - h[1]) - (h[3] - h[0])) / (12 * step);
 }
 
-/* Of terms without a gradient; they have one instance. */
+/* Adds differences of terms without a gradient, which have one instance. */
 static void add_differences(const nevh_term *decl, double t, const double q[],
                             const double p[], double buffer[], double v[]) {
     double *own_q = buffer, *own_p = own_q + decl->nq;

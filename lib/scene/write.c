@@ -46,7 +46,7 @@ static void put_changed(writer *w, const nevh__statement *one, const char *key,
     put(w, after, (size_t)(line->text + line->bytes - after));
 }
 
-/* What was set is a list or one value: NAME[i = 1..N] becomes NAME[1..N]. */
+/* A list or one value was set: NAME[i = 1..N] becomes NAME[1..N]. */
 static void put_set(writer *w, const nevh__statement *one, const char *value) {
     const char *open = strchr(one->key.text, '['),
                *equals = one->head.index ? strchr(open, '=') : NULL;

@@ -69,7 +69,8 @@ static nevh__wide state(const orbit *o, size_t k) {
     return o->pairs ? o->dd.state[k] : o->quad.state[k];
 }
 
-/* Of a variable so far: where series begin and within them, and now. */
+/* The largest value of a variable so far: at the beginnings of series, within them,
+   and now. */
 static double most(const orbit *o, size_t k) {
     double begun = o->pairs ? o->dd.seen[k] : o->quad.seen[k];
     return fmax(begun, fabs((double)state(o, k)));
@@ -222,8 +223,8 @@ static int go_both(nevh_certain *c, nevh__wide t) {
     return status;
 }
 
-/* Whether a variable's error is above the digits that were asked for, of the
-   largest that it was. */
+/* True if a variable's error exceeds the requested digits, relative to its largest
+   value. */
 static bool lacks_digits(const nevh_certain *c) {
     bool lacks = false;
     for (size_t k = 0; k < 2 * c->n; k++)
@@ -245,8 +246,8 @@ static nevh_timing *timing_until(const nevh_certain *c, double t) {
     return timing;
 }
 
-/* What H does with time up to there, and as far again, so that a way in many parts
-   begins seldom; orbits begin again where that was not known. */
+/* Plans the dependence of H on time up to there, and as far again, so that many
+   short calls plan seldom; orbits begin again if it was not known. */
 static int look_ahead(nevh_certain *c, double t) {
     double t0 = (double)c->t0;
     bool known =

@@ -15,7 +15,7 @@ typedef struct {
     double high, low;
 } nevh__dd;
 
-/* Of doubles of which the first is not smaller. */
+/* The sum of two doubles, the first of which is not smaller. */
 NEVH__INLINE nevh__dd nevh__dd_of(double large, double small) {
     double sum = large + small;
     return (nevh__dd){sum, small - (sum - large)};

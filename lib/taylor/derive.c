@@ -55,7 +55,7 @@ static int refuse_operation(const reader *r, const nevh_term *term,
     return refuse(r, term, text);
 }
 
-/* What the nodes made since the last call have in common. */
+/* Tags the nodes made since the last call. */
 static void tag(reader *r, int what, bool backwards) {
     for (; r->tagged < r->g->used; r->tagged++) {
         r->g->nodes[r->tagged].tag = what;
@@ -63,7 +63,7 @@ static void tag(reader *r, int what, bool backwards) {
     }
 }
 
-/* Where an operand of an instance is. */
+/* The node of an operand of an instance. */
 static int operand(const reader *r, const nevh_term *term, size_t instance,
                    const int slots[], nevh__tape_operand o) {
     const nevh__tape *tape = term->params;
@@ -92,7 +92,7 @@ static int operate(nevh__graph *g, unsigned operation, int a, int b) {
         a, b);
 }
 
-/* Whether the operation has a kink that series can begin after. */
+/* True if the operation has a kink after which series can begin again. */
 static bool is_between_breaks(const reader *r, const nevh__instruction *c) {
     return r->broken && !nevh__operation_is_smooth(c->operation) &&
            (c->a.by | c->b.by) == NEVH__BY_T;
@@ -145,7 +145,7 @@ static int read_term(reader *r, const nevh__term_entry *entry) {
     return status;
 }
 
-/* What is watched is in no effect's name where the poles of several meet. */
+/* Watches poles without an effect's name, since poles of several effects may meet. */
 static int watch_poles(reader *r) {
     nevh__graph_watch_poles(r->g, NULL);
     tag(r, 0, false);

@@ -20,7 +20,7 @@ typedef struct {
     size_t apart, orders;
 } polynomial;
 
-/* Of terms from order 1 on: the sum of their sizes by h. */
+/* The sum of the sizes of the terms from order 1 on, at h. */
 static double size_of(polynomial p, double h) {
     double sum = 0;
     for (size_t k = p.orders; --k > 0;)
@@ -44,7 +44,7 @@ static double value_of(polynomial p, double since) {
 
 static const double noise = 8 * DBL_EPSILON; /* of a polynomial */
 
-/* Whether it keeps its sign from 0 to h, or to -h: by steps, none of which is
+/* True if the polynomial keeps its sign from 0 to h, or to -h: by steps, none
    longer than its slope allows. */
 static bool keeps_on(polynomial p, double h, double size, double slope) {
     enum { MOST_STEPS = 40 };
@@ -84,7 +84,7 @@ static bool is_off_cut(polynomial y, polynomial x, double h) {
 /* Logarithms of what is negligible: of exp, where doubles end, and of powers. */
 static const double negligible = -700, small_power = -300;
 
-/* Whether a^c is negligible from -h to h. */
+/* True if a^c is negligible from -h to h. */
 static bool is_small_power(polynomial a, double c, double change) {
     double size = fabs(a.at[0]);
     if (c < 0)
@@ -92,8 +92,8 @@ static bool is_small_power(polynomial a, double c, double change) {
     return size + change == 0 || c * log(size + change) < small_power;
 }
 
-/* Whether terms of a function that is steep fall within -h to h, or the function
-   is constant there. */
+/* True if the terms of a steep function decrease within -h to h, or the function is
+   constant there. */
 static bool is_resolved(const nevh__edge *e, polynomial a, double h) {
     static const double part = 1 / 3.0; /* of the order */
     static const double saturated = 50; /* tanh(50) = 1 - 7e-44 */

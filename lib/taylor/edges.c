@@ -10,8 +10,8 @@ static bool is_whole(const nevh__graph *g, int node) {
            rint((double)x) == (double)x;
 }
 
-/* Of the steep functions of a node: an exponential, or a hyperbolic function, or a
-   power; the steepest power counts. */
+/* True if the node has a steep function of this kind already: an exponential or
+   hyperbolic function, or a power; the steepest power counts. */
 static bool has_steep(nevh__graph *g, const nevh__graph_edge *e) {
     enum { GROWS = 4, SATURATES = 8, POWER = 16 };
     uint8_t *watched = &g->nodes[e->node].watched;
@@ -29,7 +29,7 @@ static bool has_steep(nevh__graph *g, const nevh__graph_edge *e) {
     return had;
 }
 
-/* Whether a node is watched; it is from now on. */
+/* True if a node was watched before; it is from now on. */
 static bool has(nevh__graph *g, const nevh__graph_edge *e) {
     enum { STRICT = 1, LOOSE = 2 };
     uint8_t *watched = &g->nodes[e->node].watched;
@@ -84,7 +84,7 @@ static double power_of(const nevh__graph *g, unsigned operation, int a, int b,
     }
 }
 
-/* Where an operation is a power of higher order than a series may resolve. */
+/* Watches a power of higher order than a series may resolve. */
 static void watch_power(nevh__graph *g, unsigned operation, int a, int b,
                         const char *effect) {
     static const double least = 12, least_pole = 4;
@@ -100,7 +100,7 @@ static void watch_power(nevh__graph *g, unsigned operation, int a, int b,
                                   .effect = effect});
 }
 
-/* Where the function of nodes grows faster than any polynomial. */
+/* Watches a function that grows faster than any polynomial. */
 static void watch_steep(nevh__graph *g, unsigned operation, int a, int b,
                         const char *effect) {
     nevh__graph_edge e = {.node = a,
@@ -152,7 +152,7 @@ static bool has_pole(const nevh__graph_node *x) {
            (x->kind == NEVH__GRAPH_CALL && x->function == NEVH__TAN);
 }
 
-/* Whether poles of an operand are poles of the node. */
+/* True if poles of an operand are poles of the node. */
 static bool hands_on(const nevh__graph_node *x) {
     double c = (double)x->number;
     return x->kind == NEVH__GRAPH_ADD || x->kind == NEVH__GRAPH_SCALE ||

@@ -43,11 +43,11 @@ typedef struct {
     nevh__wide number;
 } nevh__graph_node;
 
-/* What is to keep away from 0 on the way, or a function is not the one whose
-   derivatives a series has: the arguments of roots, powers and logarithms, the
-   distance of others to the edge of their domain, and poles that a function sees.
-   Or what is to change little within a series: the arguments of functions that
-   grow faster than any polynomial, and may be lost in rounding where it begins. */
+/* A node that must keep away from 0, because a function and its derivatives change
+   there: the arguments of roots, powers and logarithms, the distance of others from
+   the edge of their domain, and poles that a function sees.  Or a node that must
+   change little within a series: the arguments of functions that grow faster than
+   any polynomial, and may be lost in rounding at its beginning. */
 typedef struct {
     int node, also; /* also: of atan2, whose node is y, x; else -1 */
     bool strict;    /* else it may touch 0: of a root that is squared again */

@@ -30,8 +30,8 @@ enum { NEVH__ORBIT_PAST = 128 };
         double *seen;    /* 2n: the same, and within series */                     \
         double *term; /* 2n: the largest term of a series, so far, which     \
                            rounding is in proportion to */     \
-        /* Of the last series: how far they held, and how fast the state         \
-           changes where they begin. */ \
+        /* For the last series: the time for which they held, and the rate of    \
+           change of the state at their beginning. */ \
         double held[NEVH__ORBIT_PAST], speed[NEVH__ORBIT_PAST];                    \
         bool ended; /* where the last one got too short, without bound */          \
         const nevh_timing *timing; /* NULL: of no concern; borrowed */             \
@@ -53,7 +53,7 @@ enum { NEVH__ORBIT_PAST = 128 };
     /* The rows of the present series, by a unit of 1. */                          \
     void nevh__series_orbit_rows_##kind(const nevh__series_orbit_##kind *,         \
                                         long double rows[]);                       \
-    /* What it costs, in nanoseconds or so: the same on any machine. */            \
+    /* The cost, in about nanoseconds: the same on any machine. */                 \
     double nevh__series_orbit_work_##kind(const nevh__series_orbit_##kind *);
 
 /* Names of the kind of orbit that references are of, and its bits; states are

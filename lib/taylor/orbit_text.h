@@ -51,8 +51,8 @@ void NAMED(nevh__series_orbit_clear)(orbit *o) {
     memset(o, 0, sizeof *o);
 }
 
-/* What a variable's error is measured in: the largest that it was, or that the
-   others of its half were. */
+/* The unit of a variable's error: its largest value so far, or that of the others
+   of its half. */
 static double size_of(const orbit *o, size_t i) {
     size_t from = i < o->n ? 0 : o->n;
     double most = o->most[i];
@@ -96,7 +96,8 @@ static void take_unit(orbit *o, double unit) {
     NAMED(nevh__series_in)(o->series, o->unit);
 }
 
-/* Where coefficients are too large for the unit, a shorter one is tried. */
+/* Expands a series; if coefficients are too large for the unit of time, in a
+   shorter one. */
 static bool expand(orbit *o, real t, const real state[]) {
     static const double shorter = 0x1p-15;
     enum { TRIES = 64 };
@@ -141,8 +142,8 @@ static void limit_by_time(orbit *o) {
     o->reach = o->stops ? left : o->reach;
 }
 
-/* What the state does while series get shorter and shorter: at the end of a
-   solution it changes ever faster, at a mere branch point it does not. */
+/* True if series that get shorter and shorter mean the end of a solution, where the
+   state changes ever faster; at a branch point it does not. */
 static bool ends(const orbit *o) {
     static const double shrunk = 1e4, faster = 10;
     size_t now = o->count % NEVH__ORBIT_PAST;
@@ -175,7 +176,7 @@ static long double slope_after(const orbit *o, size_t i, real since) {
     return sum;
 }
 
-/* Whether H has the slopes that the series has after a time. */
+/* True if the series has the derivatives of H after a time. */
 static bool is_of_H(orbit *o, real since) {
     static const long double alike = 1e-6L, nothing = 1e-100L;
     size_t each = 2 * o->n;

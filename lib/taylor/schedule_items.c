@@ -64,7 +64,7 @@ static void count_uses(nevh__scheduler *s, const int slope[]) {
             s->apart[s->g->nodes[i].a]++;
 }
 
-/* Whether a sum is written into those that use it. */
+/* True if a sum is written into the nodes that use it. */
 static bool dissolves(const nevh__scheduler *s, int node) {
     const nevh__graph_node *x = &s->g->nodes[node];
     return !s->apart[node] &&

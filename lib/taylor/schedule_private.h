@@ -38,7 +38,7 @@ typedef struct {
     bool failed;
 } nevh__scheduler;
 
-/* What remains of a multiple. */
+/* The node of which another is a multiple. */
 int nevh__schedule_peel(const nevh__graph *, int node, nevh__wide *factor);
 /* Items of all that slopes and edges need.  `failed` where memory is out; arrays are
    the caller's to free. */

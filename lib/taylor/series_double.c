@@ -24,7 +24,8 @@ NEVH__INLINE void store(series *s, size_t k) {
         value[r->lane_b[i]];
 }
 
-/* What the order before gave comes last, so that nothing else waits for it. */
+/* Takes the products of the previous order last, so that the others need not wait
+   for them. */
 NEVH__INLINE void add_up(series *s, size_t k) {
     size_t lanes = s->of->lanes;
     for (size_t from = 0; from < lanes; from += NEVH__LANES) {

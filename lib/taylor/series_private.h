@@ -78,7 +78,7 @@ NEVH__INLINE double nevh__series_reach(size_t order, double tolerance, size_t k,
     return (tolerance + before * an_order - size) / (double)k;
 }
 
-/* How long series hold, at most `reach`, before the edge of a domain is met, to
+/* The time for which series hold, at most `reach`, before the edge of a domain, to
    either side.
    rows   coefficients of what is watched, n_watched each, of `orders` orders */
 double nevh__domain_reach(const nevh__recurrence *, const double rows[],
@@ -87,7 +87,7 @@ double nevh__domain_reach(const nevh__recurrence *, const double rows[],
    orders that are finite.  SIZE_MAX: none. */
 size_t nevh__domain_edge(const nevh__recurrence *, const double rows[],
                          size_t orders, double reach);
-/* Whether an orbit goes on behind an edge: its function is finite there for all
+/* True if an orbit goes on behind an edge: the function is finite there for all
    arguments, and so is the momentum. */
 bool nevh__domain_is_closed(const nevh__recurrence *, size_t edge);
 /* "sqrt(...) of effect "V" is not analytic ..." */
@@ -107,7 +107,7 @@ nevh__recurrence *nevh__recurrence_wide(const nevh_system *,
                                         bool broken, nevh__report *);
 void nevh__recurrence_free(nevh__recurrence *); /* NULL is allowed */
 
-/* What is said of coefficients that are not finite, at a time. */
+/* The message on coefficients that are not finite, at a time. */
 #define NEVH__SERIES_NOT_FINITE                                                \
     "the series at t = %.9g is not finite: H has no derivatives there, the "   \
     "state is out of its domain, or a value is beyond 1e308"
@@ -124,7 +124,7 @@ void nevh__series_in_double(nevh__series_double *, double unit);
    itself, on.  Returns whether they are finite. */
 bool nevh__series_expand_double(nevh__series_double *, double t,
                                 const double state[], double rows[]);
-/* What is watched at that state, for nevh__domain_reach. */
+/* The watched nodes at that state, for nevh__domain_reach. */
 const double *nevh__series_watched_double(const nevh__series_double *);
 
 /* The same in numbers of other kinds. */

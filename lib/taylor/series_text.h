@@ -245,7 +245,7 @@ NEVH__INLINE void next_batch(const series *s, const nevh__batch *b, size_t k) {
     }
 }
 
-/* Of order k, in which edges of domains are looked for. */
+/* Keeps order k of the nodes that may meet edges of domains. */
 NEVH__INLINE void note_watched(const series *s, size_t k) {
     const nevh__recurrence *r = s->of;
     double *to = s->watched + k * r->n_watched;

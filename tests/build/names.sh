@@ -1,7 +1,8 @@
 #!/bin/sh
 # Private names are the standard terms.  No two names differ by underscores
 # alone, no type is defined twice, no two files of the library, tools or tests
-# have one name, and metaphors that were renamed do not come back.
+# have one name, and metaphors that were renamed do not come back.  Comments
+# begin with a subject or a verb.
 
 srcdir=${srcdir:-.}
 work=names.$$
@@ -78,6 +79,24 @@ grep -nE '\b(nevh__call(ed)?(_[a-z_]*)?|nevh__[a-z_]*_(lean|repeats)|lack|lane_w
 if test -s $work/terms; then
     echo "names that have a standard term:"
     cat $work/terms
+    status=1
+fi
+
+# Comments that begin with another word, in the folders that have none.
+plain='include integrators models lib/diagnose lib/ensemble lib/expression
+    lib/gradient lib/implicit lib/run lib/scene lib/system lib/taylor lib/work'
+inverted() {
+    awk -v words='(Of|What|Whether|Where|Those|That|How|By|Who|Whose|Whoever)' \
+        '{ gsub(/"[^"]*"/, "") }
+        $0 ~ "/\\* *" words "([^A-Za-z]|$)" { print FILENAME ":" FNR ": " $0; found = 1 }
+        END { exit !found }' "$@"
+}
+echo 'x = 1; /* What follows. */' | inverted >/dev/null || exit 1
+echo '/* Whatever follows; what is 1. */' | inverted >/dev/null && exit 1
+(cd "$srcdir" && inverted $(find $plain -name '*.[ch]')) >$work/comments
+if test -s $work/comments; then
+    echo "comments that begin with no subject or verb:"
+    cat $work/comments
     status=1
 fi
 echo "$(wc -l <$work/files) files"
