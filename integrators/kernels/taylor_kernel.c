@@ -84,9 +84,8 @@ static size_t order_for(double tolerance) {
 /* Tolerances below this are of errors that doubles cannot hold. */
 static const double finest = DBL_EPSILON;
 
-/* True if the processor has 64-bit long doubles.  Elsewhere they are as short as
-   doubles, or made by a library that takes a hundred times as long: doubles are
-   used. */
+/* True if long doubles have 64 bits.  Elsewhere, where they are doubles, or a hundred
+   times as slow, doubles are used. */
 enum { LONGER = LDBL_MANT_DIG == 64 };
 
 static bool plan_series(const nevh_work *w, taylor_plan *plan) {

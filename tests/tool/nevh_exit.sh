@@ -8,7 +8,7 @@
 XDG_CACHE_HOME=$PWD/$work/cache
 export XDG_CACHE_HOME
 
-# scene NAME H REST
+# scene NAME H T_END
 scene() {
     cat >$work/$1.nevh <<END
 [parameters]
@@ -30,7 +30,6 @@ outcomes = energy_error
 END
 }
 scene good 'a*x^2/2'
-scene long 'a*x^2/2' 1e12
 scene bad 'a*x^2/2' 'b*2'
 scene ends 'a*x*log(x)'  # H is not finite from x = 0 on
 scene infinite '-a*x^4'  # x grows without bound in a finite time

@@ -39,27 +39,20 @@ static const char *kind_name(int kind) {
                                : others[kind - HARD_STOPPED];
 }
 
-/* The command that repeats the case. */
-static char *command_of(const hard_case *c) {
-    list words = {0}, settings = {0};
-    list_print(&words, "compare %s", c->scene);
-    if (c->settings)
-        list_split_at(&settings, c->settings, ';');
-    for (size_t i = 0; i < settings.count; i++)
-        list_print(&words, "--set %s", settings.item[i]);
-    if (c->dt)
-        list_print(&words, "--dt %s", c->dt);
-    if (c->t_end)
-        list_print(&words, "--t-end %s", c->t_end);
-    char *text = text_print("%s", words.item[0]);
-    for (size_t i = 1; i < words.count; i++) {
-        char *longer = text_print("%s %s", text, words.item[i]);
-        free(text);
-        text = longer;
-    }
-    list_free(&words);
-    list_free(&settings);
-    return text;
+/* The command that repeats a case, from its options; to be freed. */
+static char *command_of(const options *o) {
+    char *text = NULL;
+    size_t size;
+    FILE *f = tool_owned(open_memstream(&text, &size));
+    fprintf(f, "%s %s", o->operands.item[0], o->operands.item[1]);
+    for (size_t i = 0; i < o->settings.count; i++)
+        fprintf(f, " --set %s", o->settings.item[i] + 1);
+    if (o->dt.count)
+        fprintf(f, " --dt %s", o->dt.item[0]);
+    if (o->t_end)
+        fprintf(f, " --t-end %s", o->t_end);
+    fclose(f);
+    return tool_owned(text);
 }
 
 static char *happened(const row *r) {
@@ -77,9 +70,8 @@ static char *happened(const row *r) {
 }
 
 static void add_record(table *t, const plan *p, const hard_case *c,
-                       const row *r) {
+                       const char *repeat, const row *r) {
     bool measured = r->ran || r->late;
-    char *repeat = command_of(c);
     table_text(t, c->name);
     table_text(t, repeat);
     table_text(t, r->integrator);
@@ -91,7 +83,6 @@ static void add_record(table *t, const plan *p, const hard_case *c,
     table_number(t, r->ran ? r->state_error : NAN);
     table_text(t, r->status);
     table_text(t, kind_name(kind_of(r)));
-    free(repeat);
 }
 
 /* The rows of one kind: how many, their errors, and what happened to the one
@@ -130,10 +121,10 @@ static void add_kind(table *t, const plan *p, const hard_case *c,
 }
 
 static void add_rows(suite *all, const plan *p, const hard_case *c,
-                     const row_list *rows) {
+                     const char *repeat, const row_list *rows) {
     table_group(all->table);
     for (size_t i = 0; all->each && i < rows->count; i++)
-        add_record(all->table, p, c, &rows->row[i]);
+        add_record(all->table, p, c, repeat, &rows->row[i]);
     for (int kind = 0; !all->each && kind < HARD_KINDS; kind++)
         add_kind(all->table, p, c, rows, kind);
     for (size_t i = 0; i < rows->count; i++)
@@ -178,7 +169,9 @@ static int run_case(suite *all, const options *o, const hard_case *c) {
             if (rows.row[i].ran)
                 row_finish(&p, &rows.row[i]);
         }
-        add_rows(all, &p, c, &rows);
+        char *repeat = command_of(&own);
+        add_rows(all, &p, c, repeat, &rows);
+        free(repeat);
         rows_free(&rows);
     }
     plan_free(&p);
