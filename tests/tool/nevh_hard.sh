@@ -38,7 +38,8 @@ for one in 'Kepler e = 0.6' 'double pendulum, chaotic' 'Kapitza, stable'; do
         --format csv -o $work/one.csv
     set +f
     wanted=$(grep -v '^#' $work/one.csv | awk -F, 'NR == 2 { print $9 }')
-    grep -F "$one" $work/all.csv | grep -q ",gauss4,.*,$wanted," ||
+    test -n "$wanted" &&
+        grep -F "$one" $work/all.csv | grep -q ",gauss4,.*,$wanted," ||
         fails "has another error than $repeat"
 done
 
