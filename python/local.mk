@@ -1,7 +1,20 @@
-# The module for Python: one file over the shared library, which it finds from
-# where it is installed.  make install pythondir=DIR puts it elsewhere.
+# The package for Python over the shared library, which it finds from where it is
+# installed.  make install pythondir=DIR puts it elsewhere.
 pythondir = $(pkgdatadir)/python
-dist_python_DATA = python/nevh.py python/who-keeps-the-energy.ipynb
+dist_python_DATA = python/who-keeps-the-energy.ipynb
+python_packagedir = $(pythondir)/nevh
+dist_python_package_DATA = $(python_package)
+python_package = \
+	python/nevh/__init__.py \
+	python/nevh/_arrays.py \
+	python/nevh/_commands.py \
+	python/nevh/_functions.py \
+	python/nevh/_hgrad.py \
+	python/nevh/_library.py \
+	python/nevh/_scene.py \
+	python/nevh/_solve.py \
+	python/nevh/_sweep.py \
+	python/nevh/py.typed
 EXTRA_DIST += python/pyproject.toml python/setup.py python/stage.sh \
 	tests/python/find_python.sh
 
@@ -16,7 +29,7 @@ python/nevh_files: libnevh.la tools/nevh$(EXEEXT) python/stage.sh
 interpreter = $${PYTHON:-python3}
 wheel: python/nevh_files
 	rm -rf python/wheel && $(MKDIR_P) python/wheel
-	cp -R python/nevh_files $(srcdir)/python/nevh.py \
+	cp -R python/nevh_files $(srcdir)/python/nevh \
 	  $(srcdir)/python/pyproject.toml $(srcdir)/python/setup.py python/wheel
 	chmod -R u+w python/wheel
 	cd python/wheel && $(interpreter) -c \
@@ -29,7 +42,7 @@ portable_name = $(PACKAGE)-$(VERSION)-portable
 portable: python/nevh_files
 	rm -rf $(portable_name) && cp -R python/nevh_files $(portable_name)
 	$(MKDIR_P) $(portable_name)/share/nevh/python $(portable_name)/share/doc/nevh
-	cp $(srcdir)/python/nevh.py $(srcdir)/python/who-keeps-the-energy.ipynb \
+	cp -R $(srcdir)/python/nevh $(srcdir)/python/who-keeps-the-energy.ipynb \
 	  $(portable_name)/share/nevh/python/
 	cp $(srcdir)/README.md $(srcdir)/COPYING $(portable_name)/share/doc/nevh/
 	-$(MAKE) html $(sheets_html) && \

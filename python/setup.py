@@ -37,11 +37,6 @@ def stage():
 
 if not os.path.isdir("nevh_files"):
     stage()
-# The module as a package, which may say that it has type hints (PEP 561).
-package = os.path.join("build", "package")
-os.makedirs(package, exist_ok=True)
-shutil.copyfile("nevh.py", os.path.join(package, "__init__.py"))
-open(os.path.join(package, "py.typed"), "w").close()
-setup(packages=["nevh", "nevh_files"], package_dir={"nevh": package},
+setup(packages=["nevh", "nevh_files"],
       package_data={"nevh": ["py.typed"], "nevh_files": ["**/*"]},
       cmdclass={"bdist_wheel": Wheel})

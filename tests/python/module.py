@@ -1,4 +1,4 @@
-"""nevh tests: python/nevh.py.  Each test is a function; without NumPy or SciPy those
+"""nevh tests: the package python/nevh.  Each test is a function; without NumPy or SciPy those
 that need it are skipped.
 
 SPDX-License-Identifier: GPL-3.0-or-later
@@ -18,7 +18,7 @@ if os.environ.get("NEVH_TEST_WITHOUT_NUMPY"):
     sys.modules["numpy"] = None
 import nevh  # noqa: E402
 
-np = nevh.np
+from nevh._arrays import np  # noqa: E402
 try:
     import scipy.integrate as scipy_integrate
 except ImportError:
@@ -546,7 +546,7 @@ def test_what_an_observer_raises_stops_the_run():
 def interrupted(name, function, *arguments, **named):
     """The exception that the interrupt key makes of a call, once it is in that function
     of the library."""
-    begun, real = threading.Event(), getattr(nevh._lib, name)
+    begun, real = threading.Event(), getattr(nevh._library._lib, name)
 
     def press():
         begun.wait(60)
@@ -556,7 +556,7 @@ def interrupted(name, function, *arguments, **named):
     def noted(*arguments):
         begun.set()
         return real(*arguments)
-    setattr(nevh._lib, name, noted)
+    setattr(nevh._library._lib, name, noted)
     before = signal.getsignal(signal.SIGINT)
     signal.signal(signal.SIGINT, signal.default_int_handler)
     thread = threading.Thread(target=press)
@@ -566,7 +566,7 @@ def interrupted(name, function, *arguments, **named):
     finally:
         thread.join()
         signal.signal(signal.SIGINT, before)
-        setattr(nevh._lib, name, real)
+        setattr(nevh._library._lib, name, real)
 
 
 def test_the_interrupt_key():

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The module nevh.py over the library just built, with NumPy and without.
+# The package nevh over the library just built, with NumPy and without.
 
 srcdir=${srcdir:-.}
 . "$srcdir/tests/python/find_python.sh"
@@ -20,9 +20,9 @@ mkdir "$folder" && "$python" "$srcdir/tests/python/same_states.py" "$folder" || 
 # A library of another kind is refused, as is one that is not there.
 NEVH_LIBRARY=$PWD/no-such-library "$python" -c 'import nevh' 2>&1 |
     grep -q 'set NEVH_LIBRARY' || { echo "a missing library is not named"; status=1; }
+cp -R "$srcdir/python/nevh" "$folder/nevh" && chmod -R u+w "$folder/nevh"
 sed 's/("tolerance", c.c_double),/("tolerance", c.c_float),/' \
-    "$srcdir/python/nevh.py" >other.$$.py
-"$python" other.$$.py 2>&1 | grep -q 'was built for another' ||
+    "$srcdir/python/nevh/_library.py" >"$folder/nevh/_library.py"
+PYTHONPATH=$folder "$python" -c 'import nevh' 2>&1 | grep -q 'was built for another' ||
     { echo "other structures are not noticed"; status=1; }
-rm -f other.$$.py
 exit $status

@@ -5,7 +5,7 @@
 srcdir=${srcdir:-.}
 . "$srcdir/tests/python/find_python.sh"
 version=$(sed -n 's/^#define PACKAGE_VERSION "\(.*\)"/\1/p' config.h)
-for file in nevh.py pyproject.toml; do
+for file in nevh/_library.py pyproject.toml; do
     grep -q "^_*version_* = \"$version\"" "$srcdir/python/$file" ||
         { echo "python/$file is of another version than $version"; exit 1; }
 done

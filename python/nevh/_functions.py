@@ -1,0 +1,144 @@
+"""Systems of functions: of Python, or addresses of functions in C.
+
+SPDX-License-Identifier: GPL-3.0-or-later
+"""
+
+from __future__ import annotations
+
+import ctypes as c
+import numbers
+import os
+
+from ._library import _check, _lib, _Options, Refused, _Separability, _value_fn
+from ._arrays import np, _numbers
+from ._scene import Scene, _scene
+
+
+def _address(function):
+    """The address of a C function double H(double t, const double q[], const double
+    p[], const void *params), or None: of a ctypes function or c_void_p, of what
+    numba's @cfunc gives, of a scipy.LowLevelCallable.  A plain number is refused:
+    nobody could tell that it is an address."""
+    if isinstance(function, numbers.Integral):
+        raise TypeError("H = %r is a number; an address of a C function is given as "
+                        "ctypes.c_void_p(address)" % (function,))
+    if isinstance(function, c.c_void_p):
+        if not function.value or function.value < 4096:
+            raise TypeError("%r is not the address of a function" % function)
+        return function.value
+    if hasattr(function, "address"):
+        return int(function.address)
+    if isinstance(function, c._CFuncPtr):
+        return c.cast(function, c.c_void_p).value
+    if type(function).__name__ == "LowLevelCallable":
+        capsule = tuple.__getitem__(function, 0)
+        name, pointer = c.pythonapi.PyCapsule_GetName, c.pythonapi.PyCapsule_GetPointer
+        name.restype, name.argtypes = c.c_char_p, [c.py_object]
+        pointer.restype, pointer.argtypes = c.c_void_p, [c.py_object, c.c_char_p]
+        return pointer(capsule, name(capsule))
+    return None
+
+
+class _Trap:
+    """Keeps what a function of Python raised until the library has returned.  While
+    it plans, H is tried at states where no orbit may come: there an error is but a
+    value that is not finite."""
+
+    def __init__(self):
+        self.error = None
+        self.planning = True
+
+    def spring(self):
+        error, self.error = self.error, None
+        if error is not None:
+            raise error
+
+    def planned(self, status):
+        self.planning = False
+        if status or not isinstance(self.error, Exception):
+            self.spring()
+        self.error = None
+
+
+class _PythonValue:
+    """H(t, y, *args, **parameters) of Python as a C function."""
+
+    def __init__(self, function, n, trap, args, parameters):
+        size = 8 * n
+        state = np.empty(2 * n) if np is not None else (c.c_double * (2 * n))()
+        at = state.ctypes.data if np is not None else c.addressof(state)
+        move = c.memmove
+
+        def value(t, q, p, _):
+            if trap.error is not None and not trap.planning:
+                return float("nan")
+            try:
+                move(at, q, size)
+                move(at + size, p, size)
+                return float(function(t, state.copy() if np is not None else state[:],
+                                      *args, **parameters))
+            except BaseException as error:
+                trap.error = error
+                return float("nan")
+        self.function = _value_fn(value)
+        self.address = c.cast(self.function, c.c_void_p).value
+
+
+class _Subject:
+    """A system, with what belongs to it: of a scene, or of a function."""
+
+    def __init__(self, H, n=None, parameters=None, args=(), coordinates=None,
+                 with_effects=(), without_effects=(), params=None):
+        self.scene = self.own = None
+        self.calls_python = False
+        self.trap = _Trap()
+        if isinstance(H, (Scene, str, os.PathLike)):
+            self.scene = _scene(H, parameters, coordinates, with_effects,
+                                without_effects)
+            self.system = _lib.scene_system(self.scene._made)
+            self.n = self.scene.n
+            return
+        address = _address(H)
+        if address is None and not callable(H):
+            raise TypeError("H is a text, a Scene, a function or the address of one, "
+                            "not %r" % type(H).__name__)
+        if with_effects or without_effects or coordinates:
+            raise Refused("a function has neither effects nor names of coordinates")
+        self.n = n
+        self.kept = H
+        if address is None:
+            self.kept = _PythonValue(H, n, self.trap, tuple(args), parameters or {})
+            address = self.kept.address
+            self.calls_python = True
+        self.own = self.system = _lib.system_from(
+            n, address, c.cast(params, c.c_void_p) if params is not None else None)
+        _check(_lib.system_status(self.own), _lib.system_message(self.own))
+
+    def __del__(self):
+        if getattr(self, "own", None):
+            _lib.system_free(self.own)
+
+    def friction(self):
+        rates, at = _numbers([0.0] * self.n)
+        return rates if _lib.system_friction(self.system, at) else None
+
+    def reads_time(self, t, y):
+        """Whether H depends on t; of a function, whether some times differ."""
+        if not self.own:
+            return not _lib.system_traits(self.system) & 2
+        field = _lib.field_new(self.system, c.byref(_Options(gradient_step=1)))
+        h, found = c.c_double(), set()
+        for later in (0.0, 0.1234, 0.777, 1.618, 31.4, 1234.5):
+            _lib.field_value(field, 1, c.byref(c.c_double(t + later)), y[1],
+                             y[1] + 8 * self.n, c.byref(h))
+            found.add(h.value)
+        _lib.field_free(field)
+        return len(found) > 1
+
+    def separable(self, t, y):
+        if _lib.system_traits(self.system) & 1:
+            return True
+        found = _Separability()
+        _, at = y
+        _lib.system_probe(self.system, t, at, at + 8 * self.n, None, c.byref(found))
+        return found.separable
