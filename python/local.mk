@@ -9,11 +9,18 @@ python_package = \
 	python/nevh/_arrays.py \
 	python/nevh/_commands.py \
 	python/nevh/_functions.py \
+	python/nevh/_graph.py \
+	python/nevh/_graph_text.py \
 	python/nevh/_hgrad.py \
 	python/nevh/_library.py \
 	python/nevh/_scene.py \
 	python/nevh/_solve.py \
 	python/nevh/_sweep.py \
+	python/nevh/_symbol.py \
+	python/nevh/_symbol_arrays.py \
+	python/nevh/_trace.py \
+	python/nevh/_traced.py \
+	python/nevh/_twin.py \
 	python/nevh/py.typed
 EXTRA_DIST += python/pyproject.toml python/setup.py python/stage.sh \
 	tests/python/find_python.sh

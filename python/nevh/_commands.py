@@ -107,7 +107,7 @@ def compare(scene: str | os.PathLike | Scene,
     """The table of `nevh compare`: what each integrator does to the energy, and at
     which cost.
 
-    scene    as of Scene; a formula needs y0 and t_end
+    scene    as of Scene; a formula and a function need y0 and t_end
     options  more options of the command: ["--match", "work"]
 
     Returns rows, dictionaries with the columns of the command's CSV (see the manual),
@@ -116,7 +116,7 @@ def compare(scene: str | os.PathLike | Scene,
     The command is run, since the choice of a reference, and timing, are its own and
     not the library's.
     """
-    made = _scene(scene, parameters, coordinates, with_effects, without_effects)
+    made = _scene(scene, parameters, coordinates, with_effects, without_effects, y0)
     if made.is_formula and (y0 is None or t_end is None):
         raise Refused("a formula needs y0 and t_end")
     arguments = [command(), "compare", "--format", "csv"]

@@ -12,6 +12,8 @@ import os
 from ._library import _check, _lib, _Options, Refused, _Separability, _value_fn
 from ._arrays import np, _numbers
 from ._scene import Scene, _scene
+from ._symbol import Untraceable
+from . import _traced
 
 
 def _address(function):
@@ -63,7 +65,7 @@ class _Trap:
 class _PythonValue:
     """H(t, y, *args, **parameters) of Python as a C function."""
 
-    def __init__(self, function, n, trap, args, parameters):
+    def __init__(self, calls, n, trap):
         size = 8 * n
         state = np.empty(2 * n) if np is not None else (c.c_double * (2 * n))()
         at = state.ctypes.data if np is not None else c.addressof(state)
@@ -75,8 +77,7 @@ class _PythonValue:
             try:
                 move(at, q, size)
                 move(at + size, p, size)
-                return float(function(t, state.copy() if np is not None else state[:],
-                                      *args, **parameters))
+                return calls(t, state.copy() if np is not None else state[:])
             except BaseException as error:
                 trap.error = error
                 return float("nan")
@@ -85,34 +86,53 @@ class _PythonValue:
 
 
 class _Subject:
-    """A system, with what belongs to it: of a scene, or of a function."""
+    """A system, with what belongs to it: of a scene, or of a function.  A function of
+    Python is that of a scene, too, where it can be traced; `start` is a time and a state
+    where it has a value."""
 
-    def __init__(self, H, n=None, parameters=None, args=(), coordinates=None,
+    def __init__(self, H, start=None, parameters=None, args=(), coordinates=None,
                  with_effects=(), without_effects=(), params=None):
         self.scene = self.own = None
         self.calls_python = False
         self.trap = _Trap()
         if isinstance(H, (Scene, str, os.PathLike)):
-            self.scene = _scene(H, parameters, coordinates, with_effects,
-                                without_effects)
-            self.system = _lib.scene_system(self.scene._made)
-            self.n = self.scene.n
+            self._take(_scene(H, parameters, coordinates, with_effects,
+                              without_effects))
             return
         address = _address(H)
         if address is None and not callable(H):
             raise TypeError("H is a text, a Scene, a function or the address of one, "
                             "not %r" % type(H).__name__)
-        if with_effects or without_effects or coordinates:
+        if with_effects or without_effects or coordinates and address is not None:
             raise Refused("a function has neither effects nor names of coordinates")
-        self.n = n
+        t0, y0 = start
+        self.n = len(y0) // 2
         self.kept = H
         if address is None:
-            self.kept = _PythonValue(H, n, self.trap, tuple(args), parameters or {})
+            calls = _traced.calls_of(H, y0, args, parameters)
+            if self._trace(calls, t0, y0, coordinates):
+                return
+            self.kept = _PythonValue(calls, self.n, self.trap)
             address = self.kept.address
             self.calls_python = True
         self.own = self.system = _lib.system_from(
-            n, address, c.cast(params, c.c_void_p) if params is not None else None)
+            self.n, address, c.cast(params, c.c_void_p) if params is not None else None)
         _check(_lib.system_status(self.own), _lib.system_message(self.own))
+
+    def _take(self, scene):
+        self.scene = scene
+        self.system = _lib.scene_system(scene._made)
+        self.n = scene.n
+
+    def _trace(self, calls, t0, y0, coordinates):
+        """Whether a function of Python is that of a scene; else a warning says why."""
+        if not _traced.has_value(calls, t0, y0):
+            return False
+        try:
+            self._take(_traced.scene_of(calls, t0, y0, coordinates))
+        except Untraceable as error:
+            _traced.warn(error, calls, t0, y0)
+        return self.scene is not None
 
     def __del__(self):
         if getattr(self, "own", None):

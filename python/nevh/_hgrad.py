@@ -46,10 +46,14 @@ class HGrad:
         self._ds = ds
         constants = dict(parameters or {}, **constants)
         self._subject, self._field, self._width = None, None, 0
-        self._make = lambda n: _Subject(H, n, constants, args, coordinates,
-                                        with_effects, without_effects, params)
+        self._of = (constants, args, coordinates, with_effects, without_effects, params)
         if isinstance(H, (Scene, str, os.PathLike)):
-            self._subject = self._make(None)
+            self._subject = _Subject(H, None, *self._of)
+
+    def _problem(self, gradient, gradient_step):
+        """What solve takes instead of it."""
+        return (self._given[0], gradient or self._given[2]["gradient"],
+                self._ds if gradient_step is None else gradient_step, self._of)
 
     def __reduce__(self):  # to copy and to pickle it
         return _hgrad, self._given
@@ -60,15 +64,15 @@ class HGrad:
 
     def _plan(self, t, y):
         size = len(y)
-        if self._subject is None:
-            if size % 2:
-                raise Refused("y has %d numbers; it takes as many momenta as "
-                              "coordinates" % size)
-            self._subject = self._make(size // 2)
-        n = self._n = self._subject.n
-        self._count(size)
+        if self._subject is None and size % 2:
+            raise Refused("y has %d numbers; it takes as many momenta as coordinates"
+                          % size)
         first = [row[0] if hasattr(row, "__len__") else row for row in y]
         start, at = _numbers(first)
+        if self._subject is None:
+            self._subject = _Subject(self._given[0], (float(t), start), *self._of)
+        n = self._n = self._subject.n
+        self._count(size)
         o = _Options(t=t, q=at, p=at + 8 * n, gradient=self._gradient)
         self._steps = _set_gradient_steps(o, self._subject.scene, self._ds, n, "ds")
         self._field = _lib.field_new(self._subject.system, c.byref(o))

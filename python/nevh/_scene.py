@@ -9,7 +9,7 @@ import ctypes as c
 import math
 import os
 import re
-from typing import Any, Mapping, Sequence
+from typing import Any, Callable, Mapping, Sequence
 
 from ._library import _check, _closest, _INVALID, _lib, Refused, _text, _trees
 from ._arrays import _numbers, _real
@@ -109,25 +109,32 @@ def _again(text, path, is_formula):
 
 
 class Scene:
-    """A scene: the name of one that ships, a file, a scene's text, or H alone.
+    """A scene: the name of one that ships, a file, a scene's text, H alone, or H as a
+    function (see solve), which is traced.
 
     parameters   {name: number, formula or list}, of the scene or in the formula
     coordinates  of a formula: names, "x[8]" for an array; default: all NAME of
                  which it has p_NAME, in that order; q where it has q and p alone
     with_effects, without_effects   names of effects to switch on and off
+    y0           of a function: coordinates and momenta where it has a value
     """
 
-    def __init__(self, source: str | os.PathLike,
+    def __init__(self, source: str | os.PathLike | Callable[..., float],
                  parameters: Mapping[str, Any] | None = None,
                  coordinates: Sequence[str] | None = None,
                  with_effects: str | Sequence[str] = (),
-                 without_effects: str | Sequence[str] = ()) -> None:
+                 without_effects: str | Sequence[str] = (),
+                 y0: Sequence[float] | None = None) -> None:
         self._made = self.path = None
-        if not isinstance(source, (str, os.PathLike)):
-            raise TypeError("a scene is a text, the name of a file or of a scene, not %r"
-                            % type(source).__name__)
-        text = os.fspath(source)
-        self.is_formula = False
+        if not isinstance(source, (str, os.PathLike)) and not callable(source):
+            raise TypeError("a scene is a text, the name of a file or of a scene, or a "
+                            "function, not %r" % type(source).__name__)
+        self.is_formula = callable(source)
+        if self.is_formula:
+            from ._traced import text_of
+            text, parameters = text_of(source, y0, parameters, coordinates), None
+        else:
+            text = os.fspath(source)
         if _is_scene_text(text):
             self._made = _lib.scene_parse(b"scene", text.encode())
         elif text.endswith(".nevh") or os.path.exists(text):
@@ -223,10 +230,10 @@ class Scene:
         return _lib.scene_run_settings(self._made).contents
 
 
-def _scene(source, parameters, coordinates, with_effects, without_effects):
-    """A Scene, which is made already or is to be."""
+def _scene(source, parameters, coordinates, with_effects, without_effects, y0=None):
+    """A Scene, which is made already or is to be; of a function near the state y0."""
     if not isinstance(source, Scene):
-        return Scene(source, parameters, coordinates, with_effects, without_effects)
+        return Scene(source, parameters, coordinates, with_effects, without_effects, y0)
     if parameters or coordinates or with_effects or without_effects:
         raise Refused("parameters, coordinates and effects are set when a Scene is made")
     return source

@@ -301,13 +301,16 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
           check: bool = True) -> Result:
     """Follow the orbit of a Hamiltonian from t_span[0] to t_span[1].
 
-    H        H as text ("p_x^2/2 + k*x^2/2"), a scene (see Scene), a pointer of ctypes
-             to a C function H(t, q, p, params), or, slow, a function H(t, y, *args,
-             **parameters) of Python, where y has coordinates, then momenta
+    H        H as text ("p_x^2/2 + k*x^2/2"), a scene (see Scene), a function of Python
+             H(t, y, *args, **parameters), where y has coordinates, then momenta, or
+             H(t, q, p), a HGrad, or a pointer of ctypes to a C function H(t, q, p,
+             params).  A function of Python is traced: it runs as a formula.  One that
+             cannot be, for it compares values or is no formula, runs as values,
+             slowly, with a warning that names the line
     y0       coordinates, then momenta; of scenes also {name: value}, None: as they say
     method   a name of nevh.integrators() or of SciPy's DOP853 and RK45.  None: the
              first of the scene; else with dt verlet, or gauss4 where H is no sum of
-             T(p) and V(q); without dt taylor, or dop853 for functions and for
+             T(p) and V(q); without dt taylor, or dop853 for functions in C and for
              formulas that are not analytic
     dt       the step.  Of methods that adapt it is where their steps end; None: a
              256th of the time
@@ -315,8 +318,8 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
              which H varies; default 1e-9.  atol can make it smaller only:
              min(rtol, atol/max(1, |y0|))
     t_eval   times to keep; default: all steps of dt.  They do not change the orbit
-    gradient default: of scenes what they say, exact of other texts, central4 of
-             functions
+    gradient default: of scenes what they say, exact of other texts and functions,
+             central4 of what is no formula
     gradient_step   half the spread of differences, a number or one for each of y;
              default: the scene's, else chosen where the orbit starts
     parameters, coordinates, with_effects, without_effects: see Scene
@@ -327,13 +330,16 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
     -1: failed), message, success, as SciPy does; energy_error (the largest over the
     run, relative to energy_scale), verdict (of nevh.verdicts; what the run leaves open
     is found as nevh compare finds it, by a longer run, when it is first asked for; but
-    for functions of Python), energy_drift (a unit of time), hamiltonian_evals, t_reached and y_reached (the last good state), method,
+    for functions that are no formula), energy_drift (a unit of time), hamiltonian_evals, t_reached and y_reached (the last good state), method,
     dt, tolerance, gradient (None where none is taken), names.
 
     Raises Refused for input that is wrong, Failed where a step fails, and what
     `observe` or H raised; the orbit so far is then the exception's `result`.
     """
-    n = None
+    start = None
+    if hasattr(H, "_problem"):  # a HGrad
+        H, gradient, gradient_step, given = H._problem(gradient, gradient_step)
+        parameters, args, coordinates, with_effects, without_effects, params = given
     if not isinstance(H, (Scene, str, os.PathLike)):
         if y0 is None or t_span is None:
             raise Refused("a function needs t_span and y0")
@@ -341,11 +347,11 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
         if len(y0) < 2 or len(y0) % 2:
             raise Refused("y0 takes as many momenta as coordinates, not %d in all"
                           % len(y0))
-        n = len(y0) // 2
+        start = _span(None, t_span)[0], y0
     if observe is not None and not callable(observe):
         raise TypeError("observe is a function, not %r" % type(observe).__name__)
     every = _whole_from_one("every", every)
-    subject = _Subject(H, n, parameters, args,
+    subject = _Subject(H, start, parameters, args,
                        coordinates, with_effects, without_effects, params)
     scene = subject.scene
     if scene and scene.is_formula and (y0 is None or t_span is None):

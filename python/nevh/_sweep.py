@@ -37,6 +37,7 @@ def sweep(scene: str | os.PathLike | Scene, vary: Any = None,
           without_effects: str | Sequence[str] = ()) -> Any:
     """Many orbits of a scene, side by side, into a structured array of NumPy.
 
+    scene     as of Scene; a formula and a function need t_end, a function y0, too
     vary      {name: what}: an array of values, or a text as "range(0, pi, 1000)",
               "normal(1, 0.1)", as [ensemble] of a scene has them; default: the scene's
     outcomes  as "state, last(x), period, verdict" (a number of nevh.verdicts);
@@ -52,7 +53,7 @@ def sweep(scene: str | os.PathLike | Scene, vary: Any = None,
     """
     if np is None:
         raise ImportError("nevh.sweep needs NumPy")
-    made = _scene(scene, parameters, coordinates, with_effects, without_effects)
+    made = _scene(scene, parameters, coordinates, with_effects, without_effects, y0)
     if made is scene:  # the caller's is not changed
         made = Scene(made.text)
     made._set_start(_starts(made, y0))

@@ -3,12 +3,13 @@
 
 srcdir=${srcdir:-.}
 . "$srcdir/tests/python/find_python.sh"
-check=$srcdir/tests/python/module.py
 
 status=0
 "$python" -c 'import numpy' 2>/dev/null || echo "there is no NumPy"
-"$python" "$check" || status=1
-NEVH_TEST_WITHOUT_NUMPY=1 "$python" "$check" || status=1
+for check in module traced; do
+    "$python" "$srcdir/tests/python/$check.py" || status=1
+    NEVH_TEST_WITHOUT_NUMPY=1 "$python" "$srcdir/tests/python/$check.py" || status=1
+done
 "$python" "$srcdir/tests/python/programs.py" "$srcdir" || status=1
 
 # The same states by all ways to take steps.

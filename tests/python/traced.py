@@ -1,0 +1,310 @@
+"""nevh tests: functions of Python that are traced.  Each test is a function; without
+NumPy those that need it are skipped.
+
+SPDX-License-Identifier: GPL-3.0-or-later
+"""
+
+import functools
+import math
+import os
+import random
+import sys
+import threading
+import warnings
+
+sys.dont_write_bytecode = True
+if os.environ.get("NEVH_TEST_WITHOUT_NUMPY"):
+    sys.modules["numpy"] = None
+import nevh  # noqa: E402
+from hamiltonians import cases, np, scene_of_text  # noqa: E402
+from module import Skip, close, last, main, raised  # noqa: E402
+
+
+def needs_numpy():
+    if np is None:
+        raise Skip("there is no NumPy")
+
+
+def solved(H, case, **named):
+    return nevh.solve(H, (0, 1), case.start, "gauss4", dt=case.dt, **named)
+
+
+def warned(call):
+    """What a call gives, and the texts of its warnings."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        result = call()
+    return result, ["%s:%d: %s" % (w.filename, w.lineno, w.message) for w in caught]
+
+
+def line_of(text):
+    with open(__file__, encoding="utf-8") as file:
+        return next(k for k, line in enumerate(file, 1) if text in line)
+
+
+def orbit_of(H, start=(1.0, 0.2), **named):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        return nevh.solve(H, (0, 1), start, "gauss4", dt=0.05, **named)
+
+
+def scene_text(H, start, **named):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        return nevh.Scene(H, y0=start, **named).text
+
+
+def test_orbits_are_those_of_text():
+    for case in cases:
+        if case.why:
+            continue
+        mine, said = warned(lambda: solved(case.H, case, parameters=case.parameters,
+                                           args=case.args))
+        text = solved(scene_of_text(nevh, case), case)
+        assert not said and mine.gradient == "exact", (case.name, said)
+        scale = max(abs(x) for row in text.y for x in row)
+        for a, b in zip(mine.y, text.y):
+            assert close(a, b, 1e-9 * scale), case.name
+        wrong = solved(scene_of_text(nevh, case), case, observe=lambda t, y: t > 0.3)
+        assert len(wrong.t) < len(mine.t), "a run that ends early is noticed"
+
+
+def test_how_many_are_traced():
+    count = len(cases), sum(1 for case in cases if not case.why)
+    assert np is None or count == (40, 38), count
+
+
+def test_what_is_refused_has_one_warning_with_the_line():
+    for case in cases:
+        if case.why:
+            orbit, said = warned(lambda: solved(case.H, case))
+            assert len(said) == 1 and case.why in said[0], said
+            assert "hamiltonians.py, line" in said[0] and "times slower" in said[0]
+            assert orbit.gradient == "central4" and orbit.success
+
+
+def branch(t, y):
+    if y[0] > 2 or y[0] < -2:  # the line of branch
+        return y[1]**2
+    return y[1]**2 / 2
+
+
+def loop(t, y):
+    x = y[0]
+    while abs(x) > 1e-3:  # the line of loop
+        x = x / 2
+    return y[1]**2 / 2 + x
+
+
+def whole(t, y):
+    return y[1]**2 / 2 + int(y[0])  # the line of whole
+
+
+def rounded(t, y):
+    return y[1]**2 / 2 + round(y[0])  # the line of rounded
+
+
+def gamma(t, y):
+    return y[1]**2 / 2 + math.lgamma(3 + y[0]**2)  # the line of gamma
+
+
+def table(t, y):
+    known = {1.0: 2.0}
+    return y[1]**2 / 2 + known.get(y[0], y[0]**2)  # the line of table
+
+
+def helper(x):
+    return x if x > 0 else -x  # the line of helper
+
+
+def by_helper(t, y):
+    return y[1]**2 / 2 + helper(y[0])
+
+
+def other_way(t, y):
+    x = y[0]
+    if isinstance(x, float):  # the line of other_way
+        return y[1]**2 / 2 + x**2
+    return y[1]**2 / 2 + x**4
+
+
+def random_force(t, y):  # the line of random_force
+    return y[1]**2 / 2 + y[0] * random.random()
+
+
+calls = []
+
+
+def counted(t, y):  # the line of counted
+    calls.append(t)
+    return y[1]**2 / 2 + y[0] * len(calls)
+
+
+def test_reasons_have_their_lines():
+    for H in (branch, loop, whole, rounded, gamma, table, helper, other_way,
+              random_force, counted):
+        take = by_helper if H is helper else H
+        said = warned(lambda: nevh.solve(take, (0, 0.1), [1.0, 0.5], "rk4", dt=0.05,
+                                         gradient_step=1e-3))[1]
+        said = [text for text in said if "function of Python" in text]
+        wanted = "%s:%d: " % (__file__, line_of("# the line of " + H.__name__))
+        assert len(said) == 1 and said[0].startswith(wanted), (H.__name__, said)
+        error = raised(nevh.Refused, "traced.py, line %s" % wanted.split(":")[1],
+                       nevh.compare, take, "rk4", dt=0.1, t_end=1, y0=[1.0, 0.5])
+        assert "H is no formula" in str(error)
+
+
+def test_values_of_what_is_refused():
+    """The slow way is right, too."""
+    orbit, _ = warned(lambda: nevh.solve(branch, (0, 1), [0.5, 0.2], "rk4", dt=0.05))
+    assert close(last(orbit), [0.7, 0.2], 1e-9) and orbit.gradient == "central4"
+
+
+def decorated(H):
+    @functools.wraps(H)
+    def wrapper(*of, **named):
+        return H(*of, **named)
+    return wrapper
+
+
+def test_signatures():
+    def split(t, q, p):
+        return p[0]**2 / 2 + q[0]**2
+
+    def default(t, y, k=2.0):
+        return y[1]**2 / 2 + k * y[0]**2 / 2
+
+    def by_name(t, y, *, k):
+        return default(t, y, k)
+
+    def rest(t, y, *more, **named):
+        return default(t, y, more[0] * named["k"])
+
+    class Called:
+        def __call__(self, t, y):
+            return default(t, y)
+
+        def method(self, t, y, k):
+            return default(t, y, k)
+    known = last(orbit_of("p_q^2/2 + q^2", coordinates=["q"]))
+    for H, named in ((default, {}), (by_name, {"parameters": {"k": 2}}),
+                     (default, {"args": [2]}), (default, {"parameters": {"k": 2.0}}),
+                     (rest, {"args": [1], "parameters": {"k": 2.0}}),
+                     (split, {}), (Called(), {}), (Called().method, {"args": (2.0,)}),
+                     (functools.partial(default, k=2), {}),
+                     (decorated(default), {}),
+                     (lambda t, y: y[1]**2 / 2 + y[0]**2, {})):
+        assert close(last(orbit_of(H, **named)), known, 1e-12), H
+
+
+def test_parameters_stay_parameters():
+    def H(t, y, k, n, power=2, **more):
+        return y[1]**2 / 2 + k * sum(y[0]**power / n for _ in range(n)) + more["c"] * y[0]
+    text = scene_text(H, [1, 0], parameters={"k": 3.5, "n": 4, "c": 0.25})
+    assert "k = 3.5" in text and "c = 0.25" in text and "\nn = " not in text
+    needs_numpy()
+    given = {"k": 3.5, "n": 4, "c": 0.25}
+    swept = nevh.sweep(H, {"k": [1.0, 2.0]}, "last(q)", "verlet", dt=0.01, t_end=1,
+                       y0=[1, 0], parameters=given)["last(q)"]
+    for k, q in zip((1.0, 2.0), swept):
+        given["k"] = k
+        assert last(nevh.solve(H, (0, 1), [1, 0], "verlet", dt=0.01,
+                               parameters=given))[0] == q
+
+
+def test_names_that_scenes_have_taken():
+    def H(t, y, pi=3.0, sin=2.0, q=1.5, p_q=0.5):
+        return y[1]**2 / 2 + pi * y[0]**2 + math.sin(sin * y[0]) * q + p_q * y[0]
+    text = "p_x^2/2 + 3*x^2 + 1.5*sin(2*x) + x/2"
+    assert close(last(orbit_of(H)), last(orbit_of(text)), 1e-12)
+    named = orbit_of(lambda t, y: y[2]**2 / 2 + y[3]**2 / 2 + y[0] * y[1],
+                     [1, 0, 0, 1], coordinates=["east", "north"])
+    assert named.names == ["east", "north", "p_east", "p_north"]
+
+
+def test_a_chain_is_one_sum():
+    """The text does not grow with the chain, and definitions do not explode."""
+    def chain(t, y):
+        n = len(y) // 2
+        return sum(y[n + i]**2 / 2 for i in range(n)) + sum(
+            (y[i + 1] - y[i])**4 / 4 for i in range(n - 1))
+    effects = scene_text(chain, [0.1] * 400).split("[effects]")[1]
+    assert effects.count("sum(") == 2 and len(effects) < 300
+
+    def nested(t, y):
+        x = y[0]
+        for _ in range(60):
+            x = math.sin(x + x * x) + math.cos(x)
+        return y[1]**2 / 2 + x
+    assert len(scene_text(nested, [0.3, 0])) < 5000
+    orbit_of(nested, (0.3, 0.1))
+
+
+def test_zeros_join_no_variables():
+    needs_numpy()
+    springs = np.diag([1.0, 2.0, 3.0])
+
+    def H(t, y):
+        return 0.5 * y[3:] @ y[3:] + 0.5 * y[:3] @ springs @ y[:3]
+    effects = scene_text(H, [0.1] * 6).split("[effects]")[1]
+    assert "q[1]*q[2]" not in effects and "0*" not in effects.replace("10*", "")
+
+
+def test_time_and_dependence():
+    orbit = orbit_of(lambda t, y: y[1]**2 / 2 - y[0] * math.cos(t))
+    text = orbit_of("p_x^2/2 - x*cos(t)")
+    assert close(last(orbit), last(text), 1e-13)
+    assert orbit.energy_error == text.energy_error
+
+
+def test_nothing_of_the_users_changes():
+    seen = []
+
+    class H:
+        count = 0
+
+        def __call__(self, t, y):
+            self.count += 1
+            return y[1]**2 / 2 + math.cos(y[0])
+    before = math.sin, math.cos, globals()["math"], abs, max
+    stop, wrong = threading.Event(), []
+
+    def watch():
+        while not stop.is_set():
+            if math.cos is not before[1] or globals()["math"] is not before[2]:
+                wrong.append(1)
+    thread = threading.Thread(target=watch)
+    thread.start()
+    h = H()
+    for _ in range(5):
+        seen.append(orbit_of(h).energy_error)
+    stop.set()
+    thread.join()
+    assert not wrong and (math.sin, math.cos, math, abs, max) == before
+    assert h.__class__ is H and isinstance(h.count, int)
+
+
+def test_the_papers_listing():
+    """Listing 1 and solve, which takes the object as well."""
+    def H(t, s, k, m):
+        x, p = s
+        return 0.5 * k * x**2 + 0.5 * p**2 / m
+    G = nevh.HGrad(H, [0.1, 0.1], k=4 * math.pi**2, m=1.0)
+    assert close(list(G(0.0, [1.0, 0.0])), [0, -4 * math.pi**2], 1e-12)
+    assert not G._subject.calls_python
+    orbit = nevh.solve(G, [0.0, 3.0], [1.0, 0.0])
+    assert close(last(orbit), [1, 0], 1e-6)
+    steps = nevh.solve(G, [0.0, 3.0], [1.0, 0.0], "rk4", dt=0.01)
+    assert steps.gradient == "central4" and close(last(steps), [1, 0], 1e-3)
+
+
+def test_errors_of_the_function_are_its_own():
+    def H(t, y):
+        return 1 / 0 if y[1] == 0 else y[1]
+    raised(ZeroDivisionError, "", nevh.solve, H, (0, 1), [1.0, 0.0], "rk4", dt=0.1)
+    raised(ZeroDivisionError, "", nevh.compare, H, "rk4", dt=0.1, t_end=1, y0=[1, 0])
+    raised(TypeError, "missing", nevh.compare, lambda t, y, k: y[1]**2, y0=[1, 0])
+
+
+if __name__ == "__main__":
+    sys.exit(main(globals()))
