@@ -6,6 +6,7 @@ python_packagedir = $(pythondir)/nevh
 dist_python_package_DATA = $(python_package)
 python_package = \
 	python/nevh/__init__.py \
+	python/nevh/__init__.pyi \
 	python/nevh/_arrays.py \
 	python/nevh/_commands.py \
 	python/nevh/_functions.py \
@@ -13,16 +14,18 @@ python_package = \
 	python/nevh/_graph_text.py \
 	python/nevh/_hgrad.py \
 	python/nevh/_library.py \
+	python/nevh/_plot.py \
 	python/nevh/_scene.py \
 	python/nevh/_solve.py \
 	python/nevh/_sweep.py \
 	python/nevh/_symbol.py \
 	python/nevh/_symbol_arrays.py \
+	python/nevh/_table.py \
 	python/nevh/_trace.py \
 	python/nevh/_traced.py \
 	python/nevh/_twin.py \
 	python/nevh/py.typed
-EXTRA_DIST += python/pyproject.toml python/setup.py python/stage.sh \
+EXTRA_DIST += python/pyproject.toml python/setup.py python/stage.sh python/stub.py \
 	tests/python/find_python.sh
 
 # A folder that runs wherever it is moved to: what a wheel and make portable hold.

@@ -38,5 +38,5 @@ def stage():
 if not os.path.isdir("nevh_files"):
     stage()
 setup(packages=["nevh", "nevh_files"],
-      package_data={"nevh": ["py.typed"], "nevh_files": ["**/*"]},
+      package_data={"nevh": ["py.typed", "*.pyi"], "nevh_files": ["**/*"]},
       cmdclass={"bdist_wheel": Wheel})

@@ -8,6 +8,7 @@ from __future__ import annotations
 import ctypes as c
 import math
 import re
+from typing import Any
 
 try:
     import numpy as np
@@ -110,8 +111,14 @@ class Result(dict):
         except KeyError:
             raise AttributeError(name) from None
 
+    def plot(self, x: str | None = None, y: Any = None, ax: Any = None) -> Any:
+        """Draw the orbit by matplotlib: names of variables, or "t"; returns its Axes.
+        Default: the first two coordinates, or the only one and its momentum."""
+        from ._plot import plot_orbit
+        return plot_orbit(self, x, y, ax)
+
     def __dir__(self):
-        return list(self)
+        return list(self) + ["plot"]
 
     def __repr__(self):
         width = max(map(len, self), default=0)

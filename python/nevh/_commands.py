@@ -1,61 +1,35 @@
-"""Commands as functions, and their tables.
+"""The commands of nevh as functions, made from the list that makes its help.
 
 SPDX-License-Identifier: GPL-3.0-or-later
 """
 
 from __future__ import annotations
 
-import csv
-import html
+import functools
+import inspect
+import json
+import keyword
 import os
+import re
+import signal
 import subprocess
 import sys
 import tempfile
-from typing import Any, Mapping, Sequence
+import warnings
+from typing import Any
 
-from ._library import Error, _lib, Refused, _trees
-from ._scene import Scene, _scene, _starts, _value
+from ._library import _closest, Error, Failed, gradient_names, _lib, Refused, _trees
+from ._scene import _assign, _is_row, Scene, _scene, _starts, _value
+from ._table import Table, Text
 
-
-class Table(list):
-    """Rows of `nevh compare`, dictionaries; `notes` is what stands above them."""
-    notes = ()
-    _shown = ("integrator", "order", "symplectic", "gradient", "dt", "status",
-              "max_energy_error", "energy_drift", "state_error", "gradient_evals",
-              "hamiltonian_evals", "seconds", "verdict")
-
-    def __getitem__(self, key):
-        """A row by its number, or a column by its name."""
-        return [row[key] for row in self] if isinstance(key, str) else \
-            list.__getitem__(self, key)
-
-    def _cell(self, name, value):
-        if value is None:
-            return ""
-        if isinstance(value, float):
-            return "%.1e" % value if "error" in name or "drift" in name else \
-                "%.4g" % value
-        return html.escape(str(value))
-
-    def _repr_html_(self):
-        columns = [name for name in self._shown
-                   if any(row.get(name) is not None for row in self) and
-                   (name != "hamiltonian_evals" or any(row.get(name) for row in self))]
-        head = "".join("<th>%s</th>" % name.replace("_", " ") for name in columns)
-        rows = "".join("<tr>%s</tr>" % "".join(
-            "<td>%s</td>" % self._cell(name, row.get(name)) for name in columns)
-            for row in self)
-        notes = "<br>".join(map(html.escape, self.notes))
-        return "<table><caption>%s</caption><thead><tr>%s</tr></thead><tbody>%s" \
-            "</tbody></table>" % (notes, head, rows)
-
-    def __str__(self):
-        cells = [self._shown] + [[self._cell(name, row.get(name)) for name in
-                                  self._shown] for row in self]
-        widths = [max(len(row[k]) for row in cells) for k in range(len(self._shown))]
-        return "\n".join(list(self.notes) + ["  ".join(
-            cell.ljust(width) for cell, width in zip(row, widths)).rstrip()
-            for row in cells])
+# Options that have other names here, or none.
+_names_here = {"with": "with_effects", "without": "without_effects", "set": "parameters",
+               "start": "y0", "from": "from_scene"}
+_no_options = ("format", "quiet", "help", "version")
+_files_of_tables = ("output", "resume")  # a Table has to_csv
+_of_scenes = ("with", "without", "set", "start")
+_in_order = ("integrators", "dt", "t-end")
+_not_functions = ("sweep", "help")  # sweep fills arrays by the library itself
 
 
 def command() -> str:
@@ -73,73 +47,328 @@ def command() -> str:
                 "file" % _lib.path)
 
 
-def _number(text):
+def _run(arguments, folder=None):
+    """What the command prints, and its exit status; the interrupt key ends it first."""
+    process = subprocess.Popen([command()] + arguments, stdin=subprocess.DEVNULL,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                               encoding="utf-8", errors="replace")
     try:
-        return int(text)
-    except ValueError:
+        out, said = process.communicate()
+    except BaseException:
+        process.send_signal(signal.SIGINT)
         try:
-            return float(text)
-        except ValueError:
-            return text or None
+            process.wait(10)
+        except (KeyboardInterrupt, subprocess.TimeoutExpired):
+            process.kill()
+            process.wait()
+        raise
+    return out, said.strip(), process.returncode
 
 
-def _options(**given):
-    for name, value in given.items():
-        if value is None:
+@functools.lru_cache(maxsize=None)
+def _list():
+    """{name: command} and {name: option} of `nevh help --format json`."""
+    out, said, status = _run(["help", "--format", "json"])
+    if status:
+        raise Error("%s help fails: %s" % (command(), said))
+    read = json.loads(out)
+    return ({one["name"]: one for one in read["commands"]},
+            {one["name"]: one for one in read["options"]})
+
+
+def _names():
+    """The functions: a name each."""
+    return [name for name in _list()[0] if name not in _not_functions]
+
+
+def _here(option):
+    return _names_here.get(option, option.replace("-", "_"))
+
+
+def _signature(of):
+    """How the function of a command is called."""
+    kind = inspect.Parameter
+    parameters, operand = [], of["operand"]
+    if operand:
+        parameters.append(kind(operand.split(".")[0].lower(), kind.POSITIONAL_OR_KEYWORD,
+                               annotation={"SCENE": "Any", "SCENE...": "Any"}.get(
+                                   operand, "str")))
+    elif of["name"] == "hard":
+        parameters.append(kind("case", kind.POSITIONAL_OR_KEYWORD, default=None,
+                               annotation="str | None"))
+    options = [name for name in of["options"] if name not in _no_options and
+               not (name in _files_of_tables and "format" in of["options"])]
+    parameters += [kind(_here(name), kind.POSITIONAL_OR_KEYWORD if name in _in_order else
+                        kind.KEYWORD_ONLY, default=None,
+                        annotation=_types_of(_list()[1][name]) + " | None")
+                   for name in sorted(options, key=_place)]
+    if "set" in options:
+        parameters.append(kind("coordinates", kind.KEYWORD_ONLY, default=None,
+                               annotation="Sequence[str] | None"))
+    parameters.append(kind("options", kind.KEYWORD_ONLY, default=(),
+                           annotation="Sequence[str]"))
+    return inspect.Signature(parameters, return_annotation="Table" if "format" in of[
+        "options"] else "str" if operand == "FILE" else "Text")
+
+
+def _place(option):
+    return _in_order.index(option) if option in _in_order else len(_in_order)
+
+
+def _types_of(option):
+    """The annotation of an option."""
+    if option["kind"] == "choice":
+        return "Literal[%s]" % ", ".join('"%s"' % word for word in option["words"])
+    return {"start": "Mapping[str, float | str] | Sequence[float]",
+            "data": "str | PathLike[str] | Mapping[str, Any]"}.get(option["name"]) or {
+        "flag": "bool", "count": "int", "number": "float",
+        "numbers": "float | Sequence[float]", "formula": "float | str",
+        "formulas": "float | str | Sequence[float | str]",
+        "file": "str | PathLike[str]", "settings": "Mapping[str, Any]",
+        "assignments": "Mapping[str, Any] | Sequence[str] | str",
+        "assignment": "Mapping[str, Any] | Sequence[str] | str",
+        "scene": "str | PathLike[str]", "count-or-all": "int | str"}.get(
+            option["kind"], "str | Sequence[str]")
+
+
+def _kind_of(option):
+    """The values that an option takes, in words."""
+    return {"flag": "True or False", "count": "a whole number", "number": "a number",
+            "numbers": "a number or several", "formula": "a number or formula",
+            "formulas": "a number or formula, or several", "choice": ", ".join(
+                option["words"] or ()), "file": "the name of a file",
+            "assignment": "{name: values}, or texts", "settings": "{name: value}"}.get(
+                option["kind"], "a text, or several")
+
+
+def _documentation(of, signature):
+    """The docstring of a command's function: that of its help."""
+    import textwrap
+    listed = _list()[1]
+    lines = [of["help"][0].upper() + of["help"][1:] + ".", ""]
+    for name in of["options"]:
+        if _here(name) not in signature.parameters:
             continue
-        if not isinstance(value, str) and hasattr(value, "__iter__"):
-            value = ",".join(v if isinstance(v, str) else repr(v) for v in value)
-        yield "--" + name.replace("_", "-")
-        yield value if isinstance(value, str) else repr(value)
+        help = {"set": "parameters of the scene or formula: {name: value}",
+                "start": "where the orbit starts: {name: value}, or coordinates, then momenta",
+                "data": listed["data"]["help"] + "; or the columns as {name: values}"}.get(
+                    name, listed[name]["help"])
+        lines += textwrap.wrap("%s (%s): %s" % (_here(name), _kind_of(listed[name]), help),
+                               86, subsequent_indent="    ", break_on_hyphens=False)
+    if "set" in of["options"]:
+        lines.append("coordinates: of a formula, see Scene")
+    lines += ["options: more options of the command, as texts", ""]
+    lines.append("Returns %s." % (
+        "a Table with the columns %s" % ", ".join(of["columns"]) +
+        (", ..." if len(of["columns"]) < 3 else "") if of["columns"] else
+        "a Table" if "format" in of["options"] else
+        "the name of the file" if of["operand"] == "FILE" else
+        "what it writes or draws as a Text"))
+    lines[-1:] = textwrap.wrap(lines[-1], 86, break_on_hyphens=False)
+    example = _example(of)
+    if example:
+        lines += ["", ">>> made = " + example, ">>> len(made) > 0", "True"]
+    return "\n".join(lines)
 
 
-def compare(scene: str | os.PathLike | Scene,
-            integrators: str | Sequence[str] | None = None,
-            dt: float | Sequence[float] | None = None, t_end: float | None = None, *,
-            y0: Sequence[float] | Mapping[str, float | str] | None = None,
-            gradient: str | Sequence[str] | None = None,
-            tolerance: float | Sequence[float] | None = None,
-            parameters: Mapping[str, Any] | None = None,
-            coordinates: Sequence[str] | None = None,
-            with_effects: str | Sequence[str] = (),
-            without_effects: str | Sequence[str] = (),
-            options: Sequence[str] = ()) -> Table:
-    """The table of `nevh compare`: what each integrator does to the energy, and at
-    which cost.
+def _example(of):
+    """The first example of the help as a call."""
+    import shlex
+    words = shlex.split(of["examples"][0]) if of["examples"] else []
+    if len(words) < 3:
+        return ""
+    arguments, flags = [], iter(words[2:])
+    listed = _list()[1]
+    for word in flags:
+        if word.startswith("-"):
+            name = {"-o": "output"}.get(word, word.lstrip("-"))
+            value = "True" if listed[name]["argument"] is None else next(flags)
+            if listed[name]["argument"] is not None and not _is_number(value):
+                value = repr(value)
+            arguments.append("%s=%s" % (_here(name), value))
+        else:
+            arguments.append(repr(word))
+    return "nevh.%s(%s)" % (of["name"], ", ".join(arguments))
 
-    scene    as of Scene; a formula and a function need y0 and t_end
-    options  more options of the command: ["--match", "work"]
 
-    Returns rows, dictionaries with the columns of the command's CSV (see the manual),
-    which a notebook shows as a table.  rows["verdict"] is a column.
+def _is_number(text):
+    try:
+        float(text)
+        return True
+    except ValueError:
+        return False
 
-    The command is run, since the choice of a reference, and timing, are its own and
-    not the library's.
-    """
-    made = _scene(scene, parameters, coordinates, with_effects, without_effects, y0)
-    if made.is_formula and (y0 is None or t_end is None):
-        raise Refused("a formula needs y0 and t_end")
-    arguments = [command(), "compare", "--format", "csv"]
-    arguments += _options(integrators=integrators, dt=dt, t_end=t_end,
-                          gradient=gradient, tolerance=tolerance)
-    for name, value in _starts(made, y0).items():
-        arguments += ["--start", "%s=%s" % (name, _value(name, value))]
-    with tempfile.TemporaryDirectory() as folder:
-        name = os.path.basename(made.path) if made.path else "H.nevh"
-        path = os.path.join(folder, name)
+
+def _joined(name, value):
+    if isinstance(value, str) or not hasattr(value, "__iter__"):
+        value = [value]
+    return ",".join(one if isinstance(one, str) else _value(name, one) for one in value)
+
+
+def _option(option, name, value, folder):
+    """The words of one option."""
+    word, kind = "--" + option["name"], option["kind"]
+    if value is None or value is False and kind == "flag":
+        return []
+    if kind == "flag":
+        if value is not True:
+            raise TypeError("%s is True or False, not %r" % (name, value))
+        return [word]
+    if kind in ("assignment", "assignments"):
+        lines = [value] if isinstance(value, str) else \
+            [_assign(*item) for item in value.items()] if hasattr(value, "items") else \
+            [_joined(name, value)] if all(isinstance(v, str) and "=" not in v
+                                          for v in value) else list(value)
+        return [part for line in lines for part in (word, line)]
+    if kind == "file":
+        if hasattr(value, "keys"):  # columns: of a dictionary or a data frame
+            value = _data_file(value, os.path.join(folder, "data.csv"))
+        return [word, os.fspath(value)]
+    if not isinstance(value, (str, os.PathLike)) and not _is_row(value) and \
+            not hasattr(value, "__float__"):
+        raise TypeError("%s takes %s, not %.80r" % (name, _kind_of(option), value))
+    return [word, _joined(name, value)]
+
+
+def _data_file(columns, path):
+    """Measured columns as the CSV that the command reads."""
+    names = list(columns.keys())
+    rows = list(zip(*(list(columns[name]) for name in names)))
+    if any(len(columns[name]) != len(rows) for name in names):
+        raise Refused("data: the columns %s are not of one length" % ", ".join(names))
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(",".join(names) + "\n")
+        file.writelines(",".join("" if value != value else repr(float(value))
+                                 for value in row) + "\n" for row in rows)
+    return path
+
+
+def _scene_words(of, source, given, folder, coordinates):
+    """A scene as the command takes it: a file, and options for what is changed."""
+    made = _scene(source, given.pop("parameters", None), coordinates,
+                  given.pop("with_effects", None) or (),
+                  given.pop("without_effects", None) or (), given.get("y0"))
+    y0 = given.pop("y0", None)
+    if made.is_formula and "start" in of["options"]:
+        ends = "t-end" in of["options"] and "at" not in given
+        if y0 is None and "vary" not in given or ends and "t_end" not in given:
+            raise Refused("a formula needs y0" + " and t_end" * ends)
+    words, path = list(made._changes), made.path
+    if path is None or not os.path.exists(path):
+        words, path = [], os.path.join(folder, made.name + ".nevh")
         with open(path, "w", encoding="utf-8") as file:
             file.write(made.text)
-        done = subprocess.run(arguments + list(options) + [path], text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                              encoding="utf-8")
-    if done.returncode not in (0, 1):
-        raise Refused(done.stderr.strip())
-    lines = done.stdout.splitlines()
-    table = Table(dict({name: _number(text) for name, text in row.items()},
-                       scene=made.name) for row in
-                  csv.DictReader(line for line in lines if not line.startswith("#")))
-    table.notes = [line[2:] for line in lines if line.startswith("#")]
-    return table
+    for name, value in _starts(made, y0).items():
+        words += ["--start", "%s=%s" % (name, _value(name, value))]
+    return words, path, made.name
+
+
+def _words(of, given, folder):
+    """The arguments of a command for those of its function, and the names of scenes."""
+    listed, operand = _list()[1], of["operand"]
+    given = {name: value for name, value in given.items() if value is not None}
+    more = given.pop("options", ())
+    if isinstance(more, str):
+        raise TypeError("options is a list of texts, not the text %r" % more)
+    words, operands, names = [], [], []
+    coordinates = given.pop("coordinates", None)
+    if operand and operand.startswith("SCENE"):
+        sources = given.pop("scene")
+        many = operand.endswith("...") and isinstance(sources, (list, tuple))
+        for k, source in enumerate(sources if many else [sources]):
+            place = os.path.join(folder, str(k))
+            os.mkdir(place)
+            extra, path, name = _scene_words(of, source, given if not many else dict(given),
+                                       place, coordinates)
+            words, operands, names = words + extra, operands + [path], names + [name]
+        if many:
+            for name in _of_scenes:
+                given.pop(_here(name), None)
+    else:
+        name = operand.lower() if operand else "case"
+        if name in given:
+            operands = [os.fspath(given.pop(name))]
+        if "parameters" in given:
+            words += [part for item in given.pop("parameters").items()
+                      for part in ("--set", _assign(*item))]
+    for name in of["options"]:
+        if _here(name) in given:
+            words += _option(listed[name], _here(name), given.pop(_here(name)), folder)
+    return words + list(more) + (["--"] if operands else []) + operands, names
+
+
+def _call(name, given):
+    """Run a command; its table, its text or its picture."""
+    of = _list()[0][name]
+    has_table = "format" in of["options"]
+    # What makes no table writes a file: that of the caller, else one that is read back.
+    file = next((one for one in ("output", "plot") if one in of["options"]), None)
+    reads = not has_table and file and not given.get(file)
+    with tempfile.TemporaryDirectory(prefix="nevh-") as folder:
+        words, scenes = _words(of, given, folder)
+        made = os.path.join(folder, "made.svg" if file == "plot" else "made.html")
+        arguments = [name] + (["--format", "json"] if has_table else []) + (
+            ["--" + file, made] if reads else []) + words
+        out, said, status = _run(arguments)
+        if status == 2 or status < 0:
+            raise Refused(_message(said) or "nevh %s ended with %d" % (name, status))
+        if status and not (has_table and out):
+            raise Failed(_message(said) or "nevh %s ended with %d" % (name, status))
+        if said:
+            warnings.warn(_message(said), RuntimeWarning, stacklevel=4)
+        if has_table:
+            read = json.loads(out)
+            names = {path: scene for scene, path in zip(scenes, words[-len(scenes):])}
+            for row in read["rows"]:
+                if row.get("scene") in names:
+                    row["scene"] = names[row["scene"]]
+            return Table(read["rows"], read["notes"], read.get("verdict", ()),
+                         command=arguments)
+        if reads:
+            with open(made, encoding="utf-8") as text:
+                return Text(text.read())
+    return given.get(file or "file")
+
+
+def _message(said):
+    """What the command says, without its name."""
+    listed = _list()[1]
+    said = re.sub(r"--([a-z][a-z-]*)( (?=[A-Z0-9])|=)?", lambda at: at.group() if at.group(
+        1) not in listed else _here(at.group(1)) + ("=" if at.group(2) else ""), said)
+    return "\n".join(line[6:] if line.startswith("nevh: ") else line
+                     for line in said.splitlines())
+
+
+def _function(name):
+    """The function of a command."""
+    of = _list()[0].get(name)
+    if of is None or name in _not_functions:
+        raise AttributeError("module 'nevh' has no attribute %r%s"
+                             % (name, _closest(name, _names())))
+    signature = _signature(of)
+
+    def call(*arguments, **named):
+        try:
+            bound = signature.bind(*arguments, **named)
+        except TypeError as error:
+            wrong = [one for one in named if one not in signature.parameters]
+            raise TypeError("nevh.%s: %s%s" % (
+                name, error, _closest(wrong[0], signature.parameters) if wrong else ""
+            )) from None
+        return _call(name, dict(bound.arguments))
+    call.__name__ = call.__qualname__ = name
+    call.__module__ = "nevh"
+    call.__signature__ = signature
+    call.__doc__ = _documentation(of, signature)
+    return call
+
+
+def gradients(scene: Any = None, *arguments: Any, **named: Any) -> Any:
+    """The names of all gradients; of a scene the table of `nevh gradients`: errors and
+    costs along its orbit, with the options of the command."""
+    if scene is None:
+        return gradient_names()
+    return _function("gradients")(scene, *arguments, **named)
 
 
 def main():

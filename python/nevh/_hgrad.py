@@ -8,6 +8,7 @@ from __future__ import annotations
 import ctypes as c
 import math
 import os
+from typing import Any, Mapping, Sequence
 
 from ._library import _check, Failed, _gradient, _lib, _Options, Refused
 from ._arrays import np, _numbers, _table
@@ -35,9 +36,12 @@ class HGrad:
     evaluated.  One thread at a time may call it.
     """
 
-    def __init__(self, H, ds=None, *, gradient="central4", args=(), coordinates=None,
-                 with_effects=(), without_effects=(), params=None, parameters=None,
-                 **constants):
+    def __init__(self, H: Any, ds: float | Sequence[float] | None = None, *,
+                 gradient: str = "central4", args: Sequence[Any] = (),
+                 coordinates: Sequence[str] | None = None,
+                 with_effects: str | Sequence[str] = (),
+                 without_effects: str | Sequence[str] = (), params: Any = None,
+                 parameters: Mapping[str, Any] | None = None, **constants: Any) -> None:
         self._given = H, ds, dict(
             constants, gradient=gradient, args=args, coordinates=coordinates,
             with_effects=with_effects, without_effects=without_effects, params=params,

@@ -232,7 +232,7 @@ def integrators() -> list[str]:
     return _names(_lib.integrators, _lib.integrator_name)
 
 
-def gradients() -> list[str]:
+def gradient_names() -> list[str]:
     """The names of all gradients."""
     return _names(_lib.gradients, _lib.gradient_name)
 
@@ -270,5 +270,5 @@ def _gradient(name):
     found = _lib.gradient_named(_text("gradient", name).encode())
     if not found:
         raise Refused("there is no gradient %r; there are %s"
-                      % (name, ", ".join(gradients())))
+                      % (name, ", ".join(gradient_names())))
     return found

@@ -55,19 +55,9 @@ def _is_scene_text(text):
     return re.search(r"^[ \t]*\[\w+\]", text, re.M) is not None
 
 
-def _scene_of_formula(formula, parameters, coordinates):
-    """The text of a scene whose H is that formula."""
-    definitions = ""
-    if coordinates is None:
-        coordinates = list(dict.fromkeys(re.findall(r"\bp_([^\W\d]\w*)", formula)))
-        if not coordinates and re.search(r"\bp\b", formula):
-            coordinates, definitions = ["q"], "[definitions]\np = p_q\n"
-        if not coordinates:
-            if re.fullmatch(r"[^\W\d][\w-]*", formula):
-                raise Refused("there is no scene %r%s; as a formula it has no momentum "
-                              "p_NAME" % (formula, _closest(formula, scenes())))
-            raise Refused("%r names no momentum p_NAME: give coordinates=[...]" % formula)
-    lines = ["[parameters]"]
+def _scene_text(title, coordinates, effects, parameters=None, definitions=None):
+    """The text of a scene of these effects, {name: formula}, without a start."""
+    lines = ["[scene]", "title = " + title, "[parameters]"]
     for name, value in (parameters or {}).items():
         if _is_row(value):
             name = "%s[1..%d]" % (name, len(value))
@@ -75,9 +65,35 @@ def _scene_of_formula(formula, parameters, coordinates):
     lines.append("[coordinates]")
     for name in coordinates:
         lines.append(re.sub(r"\[(\w+)\]", r"[i = 1..\1]", name) + " = 0")
-    formula = " ".join(formula.split())
-    return "[scene]\ntitle = H = %s\n%s\n%s[effects]\nH = %s\n[run]\ngradient = exact\n" \
-        % (formula, "\n".join(lines), definitions, formula)
+    for section, formulas in (("definitions", definitions), ("effects", effects)):
+        if formulas:
+            lines.append("[%s]" % section)
+            lines += ["%s = %s" % (name, _one_line("the formula of %s," % name,
+                                                   " ".join(_text("a formula", formula)
+                                                            .split())))
+                      for name, formula in formulas.items()]
+    return "\n".join(lines + ["[run]", "gradient = exact", ""])
+
+
+def _coordinates_of(formula):
+    """Each NAME of which a formula has p_NAME, in that order."""
+    return list(dict.fromkeys(re.findall(r"\bp_([^\W\d]\w*)", formula)))
+
+
+def _scene_of_formula(formula, parameters, coordinates):
+    """The text of a scene whose H is that formula."""
+    definitions = {}
+    if coordinates is None:
+        coordinates = _coordinates_of(formula)
+        if not coordinates and re.search(r"\bp\b", formula):
+            coordinates, definitions = ["q"], {"p": "p_q"}
+        if not coordinates:
+            if re.fullmatch(r"[^\W\d][\w-]*", formula):
+                raise Refused("there is no scene %r%s; as a formula it has no momentum "
+                              "p_NAME" % (formula, _closest(formula, scenes())))
+            raise Refused("%r names no momentum p_NAME: give coordinates=[...]" % formula)
+    return _scene_text("H = " + " ".join(formula.split()), coordinates, {"H": formula},
+                       parameters, definitions)
 
 
 def _scene_folders():
@@ -102,30 +118,57 @@ def scenes() -> list[str]:
                    for file in os.listdir(folder) if file.endswith(".nevh")})
 
 
-def _again(text, path, is_formula):
+def _again(text, path, is_formula, changes):
     scene = Scene(text)
-    scene.path, scene.is_formula = path, is_formula
+    scene.path, scene.is_formula, scene._changes = path, is_formula, list(changes)
     return scene
 
 
 class Scene:
-    """A scene: the name of one that ships, a file, a scene's text, H alone, or H as a
-    function (see solve), which is traced.
+    """A scene: the name of one that ships, a file, a scene's text, H alone, H as a function
+    (see solve), which is traced, or effects.
 
-    parameters   {name: number, formula or list}, of the scene or in the formula
-    coordinates  of a formula: names, "x[8]" for an array; default: all NAME of
-                 which it has p_NAME, in that order; q where it has q and p alone
+    parameters   {name: number, formula or list}, of the scene or in the formulas
+    coordinates  of a formula or of effects: names, "x[8]" for an array; default: all
+                 NAME of which they have p_NAME, in that order; q for q and p alone
     with_effects, without_effects   names of effects to switch on and off
     y0           of a function: coordinates and momenta where it has a value
+    effects      {name: formula}, in place of a source: their sum is H
+    definitions  {name: formula} for what the effects share
+
+    str(scene) is its text; with_(g=1.6) the scene with other parameters.
     """
 
-    def __init__(self, source: str | os.PathLike | Callable[..., float],
+    def __init__(self, source: str | os.PathLike | Callable[..., float] | None = None,
                  parameters: Mapping[str, Any] | None = None,
                  coordinates: Sequence[str] | None = None,
                  with_effects: str | Sequence[str] = (),
                  without_effects: str | Sequence[str] = (),
-                 y0: Sequence[float] | None = None) -> None:
+                 y0: Sequence[float] | None = None, *,
+                 effects: Mapping[str, str] | None = None,
+                 definitions: Mapping[str, str] | None = None) -> None:
         self._made = self.path = None
+        self._changes = []  # since the file was read, as options of the command
+        if (source is None) == (effects is None):
+            raise TypeError("a scene has a source or effects, one of the two")
+        if definitions and effects is None:
+            raise TypeError("definitions go with effects")
+        if effects is not None:
+            coordinates = coordinates or _coordinates_of(" ".join(effects.values()))
+            self.is_formula = True
+            self._made = _lib.scene_parse(b"scene", _scene_text(
+                " + ".join(effects), coordinates, effects, parameters,
+                definitions).encode())
+            self._check(_lib.scene_status(self._made))
+        else:
+            self._read(source, parameters, coordinates, y0)
+        for option, names in (("with", with_effects), ("without", without_effects)):
+            for name in [names] if isinstance(names, str) else names:
+                self._changes += ["--" + option, _text("an effect", name)]
+                self._check(_lib.scene_enable(self._made, name.encode(),
+                                              option == "with"))
+
+    def _read(self, source, parameters, coordinates, y0):
         if not isinstance(source, (str, os.PathLike)) and not callable(source):
             raise TypeError("a scene is a text, the name of a file or of a scene, or a "
                             "function, not %r" % type(source).__name__)
@@ -149,15 +192,25 @@ class Scene:
             self._made = _lib.scene_parse(b"H", text.encode())
         self._check(_lib.scene_status(self._made))
         if not self.is_formula:
-            for name, value in (parameters or {}).items():
-                self._check(_lib.scene_set(self._made, _assign(name, value).encode()))
-        for names, on in ((with_effects, True), (without_effects, False)):
-            for name in [names] if isinstance(names, str) else names:
-                name = _text("an effect", name).encode()
-                self._check(_lib.scene_enable(self._made, name, on))
+            self._set(parameters or {})
+
+    def _set(self, parameters):
+        for name, value in parameters.items():
+            text = _assign(name, value)
+            self._check(_lib.scene_set(self._made, text.encode()))
+            self._changes += ["--set", text]
+
+    def with_(self, **parameters: Any) -> Scene:
+        """This scene with other values of parameters; it stays as it is."""
+        other = _again(*self.__reduce__()[1])
+        other._set(parameters)
+        return other
+
+    def __str__(self):
+        return self.text
 
     @property
-    def name(self):
+    def name(self) -> str:
         """The name of its file without .nevh, or H."""
         return os.path.basename(self.path)[:-5] if self.path else "H"
 
@@ -167,7 +220,7 @@ class Scene:
                                        ", ".join(self.names))
 
     def __reduce__(self):  # to copy and to pickle it
-        return _again, (self.text, self.path, self.is_formula)
+        return _again, (self.text, self.path, self.is_formula, self._changes)
 
     def __del__(self):
         if getattr(self, "_made", None):
@@ -184,17 +237,17 @@ class Scene:
         _check(_INVALID if status == 5 else status, message)
 
     @property
-    def n(self):
+    def n(self) -> int:
         """Degrees of freedom."""
         return _lib.scene_dof(self._made)
 
     @property
-    def names(self):
+    def names(self) -> list[str]:
         """Coordinates, then momenta, in the order of y."""
         q = [_lib.scene_coordinate(self._made, k).decode() for k in range(self.n)]
         return q + ["p_" + name for name in q]
 
-    def start(self, y0=None):
+    def start(self, y0: Any = None) -> Any:
         """The state to start from: y0, or where the scene starts; with a dictionary
         {name: value}, what it names is replaced."""
         if y0 is not None and not isinstance(y0, dict):
@@ -215,7 +268,7 @@ class Scene:
         return self
 
     @property
-    def text(self):
+    def text(self) -> str:
         """The scene as text, as it is now, but for the start."""
         free = c.CDLL(None).free
         free.argtypes = [c.c_void_p]

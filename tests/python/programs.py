@@ -1,5 +1,5 @@
 """nevh tests: the Python of README.md and of the manual runs as it is printed.  Each
-block after the other, in one room of names, as a reader would type them.
+block after the other, in one set of names, as a reader would type them.
 
     programs.py FOLDER, which has README.md and doc/nevh.texi
 

@@ -12,6 +12,9 @@ for check in module traced; do
 done
 "$python" "$srcdir/tests/python/programs.py" "$srcdir" || status=1
 
+# The commands as functions; what they make goes to a folder of their own.
+"$python" "$srcdir/tests/python/commands.py" "$top" || status=1
+
 # The same states by all ways to take steps.
 folder=$PWD/same.$$
 trap 'rm -rf "$folder"' EXIT

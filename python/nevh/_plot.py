@@ -1,0 +1,122 @@
+"""Pictures by matplotlib: of tables and of orbits, in the colours of nevh's own.
+
+SPDX-License-Identifier: GPL-3.0-or-later
+"""
+
+from __future__ import annotations
+
+from ._library import integrators, Refused
+
+# Those of the command's pictures, which colour-blind eyes tell apart, and marks.
+_colours = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#E69F00", "#56B4E9")
+_marks = "osD^vP*X"
+
+# Integrators that often stand side by side: the first seven have a colour each.
+_often = ["verlet", "rk4", "gauss4", "midpoint", "euler", "blanes-moan4", "taylor",
+          "gauss6", "dop853", "heun", "forest-ruth", "pefrl", "implicit-euler", "dopri5"]
+
+# Columns x, y and by, and which axes are logarithmic, for tables that have x and y.
+_pictures = (
+    ("flow", "t", "ratio", "integrator", ""),
+    ("frequencies", "frequency", "amplitude", "integrator", "y"),
+    ("gradients", "half_spread", "max_error", "gradient", "xy"),
+    ("cost", "seconds", "max_energy_error", "integrator", "xy"),
+    ("recommend", "seconds", "max_energy_error", "integrator", "xy"),
+    ("compare", "dt", "max_energy_error", "integrator", "xy"),
+    ("hard", "max_energy_error", "state_error", "integrator", "xy"),
+)
+
+
+def _axes(ax):
+    if ax is not None:
+        return ax
+    try:
+        from matplotlib import pyplot
+    except ImportError:
+        raise ImportError("plot() needs matplotlib; a picture without it is written by "
+                          "plot=\"FILE.svg\" of the command") from None
+    return pyplot.subplots()[1]
+
+
+def style(name):
+    """The colour and the mark of an integrator, the same in all pictures."""
+    known = list(dict.fromkeys(_often + integrators()))
+    k = known.index(name) if name in known else sum(map(ord, str(name)))
+    return {"color": _colours[k % len(_colours)], "marker": _marks[k % len(_marks)]}
+
+
+def plot_table(table, x, y, by, ax):
+    """The Axes with columns of a table drawn."""
+    command = table.command[0] if table.command else ""
+    logarithmic, names = "", table.columns
+    if x is None and y is None:
+        kept = [one for one in _pictures if one[0] == command]
+        if kept:
+            _, x, y, group, logarithmic = kept[0]
+            by = by or group
+        elif command == "run" and "p_" + names[1] in names:
+            x, y = names[1], "p_" + names[1]
+        elif command == "section":
+            x, y, by = names[3], names[4], by or "section"
+    if x is None or y is None:
+        raise Refused("plot: give x and y, two of %s" % ", ".join(names))
+    ys = [y] if isinstance(y, str) else list(y)
+    for name in [x, *ys] + ([by] if by else []):
+        table[name]  # a column that is not there is named
+    ax = _axes(ax)
+    groups = list(dict.fromkeys(row.get(by) for row in table)) if by else [None]
+    for group in groups:
+        rows = [row for row in table if by is None or row.get(by) == group]
+        for name in ys:
+            points = [(row.get(x), row.get(name)) for row in rows]
+            points = [point for point in points
+                      if None not in point and not (logarithmic and str in map(type, point))]
+            if not points:
+                continue
+            scattered = command in ("section", "frequencies", "hard")
+            look = dict(style(group), markersize=4) if by == "integrator" else \
+                {"marker": "." if scattered else ""}
+            if scattered:
+                look["linestyle"] = ""
+            label = " ".join(str(word) for word in
+                             ([group] if by else []) + ([name] if len(ys) > 1 else []))
+            ax.plot(*zip(*points), label=label or None, linewidth=1, **look)
+    for scale, axis, letter in ((ax.set_xscale, ax.xaxis, "x"),
+                                (ax.set_yscale, ax.yaxis, "y")):
+        if letter in logarithmic:
+            scale("log")
+            axis.set_minor_formatter("")
+    if x == "dt":
+        steps = sorted({row["dt"] for row in table if row.get("dt")})
+        ax.set_xticks(steps[::-(-len(steps) // 6)], ["%g" % dt for dt in
+                                                     steps[::-(-len(steps) // 6)]])
+    ax.set_xlabel(x)
+    ax.set_ylabel(", ".join(ys))
+    if ax.get_legend_handles_labels()[0]:
+        ax.legend(fontsize="small")
+    return ax
+
+
+def plot_orbit(orbit, x, y, ax):
+    """The Axes with an orbit drawn: names of variables, or t."""
+    rows = {"t": orbit.t, **dict(zip(orbit.names, orbit.y))}
+    half = len(orbit.names) // 2
+    x = x or orbit.names[0]
+    y = y or (orbit.names[1 if half > 1 and x == orbit.names[0] else half])
+    ys = [y] if isinstance(y, str) else list(y)
+    for name in [x, *ys]:
+        if name not in rows:
+            raise Refused("plot: there is no variable %r; there are %s"
+                          % (name, ", ".join(rows)))
+    ax = _axes(ax)
+    for k, name in enumerate(ys):
+        ax.plot(rows[x], rows[name], linewidth=1, color=_colours[k % len(_colours)],
+                label=name if len(ys) > 1 else None)
+    ax.set_xlabel(x)
+    ax.set_ylabel(", ".join(ys))
+    ax.set_title(orbit.method, fontsize="medium")
+    if {x, *ys} <= set(orbit.names[:half]):
+        ax.set_aspect("equal")
+    if len(ys) > 1:
+        ax.legend(fontsize="small")
+    return ax
