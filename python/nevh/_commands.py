@@ -47,7 +47,7 @@ def command() -> str:
                 "file" % _lib.path)
 
 
-def _run(arguments, folder=None):
+def _run(arguments):
     """What the command prints, and its exit status; the interrupt key ends it first."""
     process = subprocess.Popen([command()] + arguments, stdin=subprocess.DEVNULL,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -309,7 +309,10 @@ def _call(name, given):
         made = os.path.join(folder, "made.svg" if file == "plot" else "made.html")
         arguments = [name] + (["--format", "json"] if has_table else []) + (
             ["--" + file, made] if reads else []) + words
+        # Files of this call alone are named without their folder.
         out, said, status = _run(arguments)
+        own = re.escape(folder) + r"/(\d+/)?"
+        out, said = re.sub(own, "", out), re.sub(own, "", said)
         if status == 2 or status < 0:
             raise Refused(_message(said) or "nevh %s ended with %d" % (name, status))
         if status and not (has_table and out):
@@ -318,7 +321,8 @@ def _call(name, given):
             warnings.warn(_message(said), RuntimeWarning, stacklevel=4)
         if has_table:
             read = json.loads(out)
-            names = {path: scene for scene, path in zip(scenes, words[-len(scenes):])}
+            names = {re.sub(own, "", path): scene for scene, path in
+                     zip(scenes, words[-len(scenes):])}
             for row in read["rows"]:
                 if row.get("scene") in names:
                     row["scene"] = names[row["scene"]]
