@@ -123,7 +123,7 @@ judge() { # SYSTEM NOISE
         for (k = 1; k <= count; k++) {
             split(pair[k], part, "="); name[k] = part[1]; at[part[1]] = part[2] } }
     { x = $4; n[x]++; d = $6 - at[x]; z = d/$7
-      inside[x] += $8 <= at[x] && at[x] <= $9
+      inside[x] += ($8 == "" || $8 <= at[x]) && ($9 == "" || at[x] <= $9)
       one[x] += z > -1 && z < 1; sum[x] += z; squares[x] += z*z }
     END {
         most = 3*sqrt(0.95*0.05/draws)

@@ -153,6 +153,8 @@ tools_nevh_SOURCES = \
 	tools/fit/fit_private.h \
 	tools/fit/fit_orbit.c \
 	tools/fit/fit_scheme.c \
+	tools/fit/fit_minimise.c \
+	tools/fit/fit_interval.c \
 	tools/fit/fit_solve.c \
 	tools/fit/fit_command.c \
 	tools/orbit/flow.h \

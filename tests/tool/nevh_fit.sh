@@ -113,6 +113,50 @@ for case in 'filmed 4e-3' 'anharmonic 1e-4'; do
         { command="fit.sh"; fails "intervals do not hold the truth"; cat $work/out; }
 done
 
+# Much noise: k and F of a driven spring lie along a curved valley, with other minima
+# far away, also where the drive is too fast for these points; the first draw has the
+# lowest sum at k = 3.7, the second at w = 2e5.
+cat >$work/driven.nevh <<'END'
+[parameters]
+k = 1
+c = 0.2
+F = 0.3
+w = 0.6
+[coordinates]
+x = 0.5
+[effects]
+K = p_x^2/2
+V = k*x^2/2 + c*x^4/4
+D = -F*x*cos(w*t)
+[run]
+t_end = 15
+dt = 0.1
+integrators = verlet
+END
+"$nevh" run $work/driven.nevh --samples 61 --integrators gauss8 --quiet >$work/driven.csv
+for seed in 24 36; do
+    ./examples/add_noise 0.1 $seed x <$work/driven.csv | sed 2d >$work/draw.csv
+    exits 0 fit $work/driven.nevh --data $work/draw.csv --vary k,F,w --set k=0.98,F=0.28,w=0.61 \
+        --format csv
+    rows | awk -F, 'BEGIN { t["k"] = 1; t["F"] = 0.3; t["w"] = 0.6 }
+        { x = t[$4]; n += ($8 == "" || $8 <= x) && ($9 == "" || x <= $9) }
+        END { exit n != 3 }' || fails "seed $seed: intervals do not hold the truth"
+done
+# Ends are where the least sum of squares, with that number held, has risen by what the
+# quantile of Student's distribution makes of its variance: 2.0025^2/57 of itself.
+./examples/add_noise 0.1 1 x <$work/driven.csv | sed 2d >$work/draw.csv
+exits 0 fit $work/driven.nevh --data $work/draw.csv --vary k,F,w --format csv
+rows >$work/whole
+for column in 8 9; do
+    end=$(awk -F, -v c=$column '$4 == "k" { print $c }' $work/whole)
+    exits 0 fit $work/driven.nevh --data $work/draw.csv --vary F,w --set k=$end --format csv
+    { head -n 1 $work/whole; rows; } | awk -F, 'NR == 1 { least = $12 }
+        NR == 2 { d = ($12/least - 1)*57/2.0025^2 - 1; exit !(d < 0.03 && d > -0.03) }' ||
+        fails "k = $end is no end"
+done
+exits 0 fit $work/driven.nevh --data $work/draw.csv --vary k,F,w
+has 'ends are where it has'
+
 # A scheme whose error is small beside the noise is kept, and a note says so; where it
 # is not, what is to be typed next has the finer one.
 "$nevh" run pendulum --integrators gauss8 --samples 61 --dt 0.05 --t-end 6 --quiet |

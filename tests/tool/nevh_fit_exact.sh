@@ -43,6 +43,9 @@ own pendulum verlet 0.05 10 g=9.8 phi --set g=9.7
 own pendulum rk4 0.02 5 l=1,g=9.8 x --set g=9.75
 own pendulum-filmed verlet 0.02 8 l=1,g=9.8 x,y --set g=9.75
 own henon-heiles verlet 0.05 10 x=0 x,y --start x=0.01
+# Near the separatrix the gradients of H alone, differences or exact ones, make orbits
+# that are farther apart than rounding is elsewhere.
+own pendulum-separatrix verlet 0.1 150 g=9.8 phi --set g=9.801
 own magnetic midpoint 0.05 8 B=1 x,y --set B=1.01
 own kapitza verlet 0.005 2 g=9.8 phi --set g=9.75
 own kepler gauss4 0.02 6 x=0.4,p_y=2 x,y --start x=0.401
@@ -52,6 +55,16 @@ by=dop853 longest=1e-2
 own oscillator verlet 0.1 10 k=1 x --set k=1.01
 own oscillator midpoint 0.1 10 k=1,m=1 x,p_x --set k=1.01,m=1.02
 by= longest=
+
+# Rounding alone changes a chaotic orbit by as much as there is: there is no interval.
+exits 0 run damped-driven-pendulum --integrators verlet --dt 0.1 --t-end 500 --samples 251 \
+    --quiet -o $work/chaos.csv
+exits 1 fit damped-driven-pendulum --integrators verlet --dt 0.1 --data $work/chaos.csv \
+    --vary q --columns phi
+says 'chaotic, and rounding alone changes it by [0-9.]+ of the spread'
+exits 0 fit damped-driven-pendulum --integrators verlet --dt 0.1 --data $work/chaos.csv \
+    --vary q --columns phi --t-end 30 --format csv
+holds verlet q=2
 
 in_a_line() {
     tr -s ' \n' ' ' <$work/out >$work/line

@@ -49,12 +49,13 @@ static double spread_of(const fitting *f) {
     const measured *m = f->data;
     double sum = 0;
     for (size_t k = 0; k < m->columns; k++) {
-        double mean = 0;
+        double mean = 0, even = m->period[k] / sqrt(12); /* angles at random */
         for (size_t i = k; i < m->points * m->columns; i += m->columns)
             mean += m->value[i] / (double)m->points;
         for (size_t i = k; i < m->points * m->columns; i += m->columns) {
-            double r =
-                (m->value[i] - mean) / (m->sigma ? m->sigma[i] : f->sigma);
+            double r = m->value[i] - mean;
+            r = even > 0 && fabs(r) > even ? even : r;
+            r /= m->sigma ? m->sigma[i] : f->sigma;
             sum += r * r;
         }
     }
@@ -73,9 +74,12 @@ static void choose_gradient(job *j, const options *o) {
     nevh_stepper *s = plan_stepper(&j->plan, j->fit.now.integrator);
     bool fits = !nevh_stepper_status(s);
     nevh_stepper_free(s);
-    list_free(fits ? &before : names);
-    if (!fits)
+    if (fits)
+        j->fit.asked = before;
+    else {
+        list_free(names);
         *names = before;
+    }
 }
 
 static int begin(job *j, const options *o) {
@@ -99,6 +103,8 @@ static int begin(job *j, const options *o) {
     j->fit.sigma = o->fit.sigma > 0 ? o->fit.sigma : 1;
     j->fit.sigma_known = o->fit.sigma > 0;
     j->fit.spread = spread_of(&j->fit);
+    j->fit.tolerance = 1e-9;
+    j->fit.difference = 6e-6; /* cube root of the rounding */
     if (o->fit.sigma > 0 && j->data.sigma)
         return tool_refuse("--sigma: %s has standard deviations of its own",
                            j->data.file);
@@ -141,13 +147,21 @@ static void show_value(table *t, double value, double error) {
         table_shown(t, "%.10g", value);
 }
 
+/* An end of an interval; "-" where none was found. */
+static void show_end(table *t, double value, double error) {
+    if (isfinite(value))
+        show_value(t, value, error);
+    else
+        table_text(t, "-");
+}
+
 static void add_row(const job *j, table *t, size_t k) {
     const varied *v = &j->fit.item[k];
     table_text(t, v->name);
     show_value(t, v->value, v->error);
     table_shown(t, "%.2g", v->error);
-    show_value(t, v->low, v->error);
-    show_value(t, v->high, v->error);
+    show_end(t, v->low, v->error);
+    show_end(t, v->high, v->error);
     table_shown(t, "%.6g", v->first);
     for (size_t i = 0; i < j->fit.count; i++)
         table_shown(t, "%.3f", j->fit.correlation[k * j->fit.count + i]);
@@ -167,7 +181,10 @@ static void add_record(const job *j, table *t, size_t k) {
     table_number(t, f->now.dt);
     table_text(t, v->name);
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
-        table_number(t, numbers[i]);
+        if (isfinite(numbers[i]))
+            table_number(t, numbers[i]);
+        else
+            table_text(t, "");
     table_shown(t, "%zu", f->residuals);
     table_shown(t, "%zu", f->residuals - f->count);
     table_number(t, f->chi_square);
@@ -292,6 +309,7 @@ static void add_words(const job *j, const options *o, list *words) {
                    f->rms[k], *unit ? " " : "", unit);
     }
     fit_scheme_words(f, words);
+    fit_interval_words(f, words);
     judge(j, words);
     fit_residual_words(f, f->residual, words);
     add_next(j, o, words);
@@ -363,6 +381,11 @@ static int tell_failure(const job *j) {
                     *f->direction ? ": where they change together, " : "",
                     f->direction,
                     *f->direction ? ", nothing that was measured changes" : "");
+    else if (fit_is_chaotic(f))
+        tool_refuse("%s: these data determine nothing: the orbit is chaotic, "
+                    "and rounding alone changes it by %.2g of the spread of "
+                    "the data; fit its beginning: --t-end",
+                    j->plan.name, f->rounding / f->spread);
     else if (f->why)
         tool_refuse("%s: no fit: there is no orbit: %s", j->plan.name, f->why);
     else
@@ -377,6 +400,7 @@ static void clear(job *j) {
     for (size_t k = 0; k < f->count; k++)
         free((char *)f->item[k].name);
     free(f->item);
+    list_free(&f->asked);
     free(f->correlation);
     free(f->rms);
     free(f->residual);

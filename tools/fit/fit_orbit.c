@@ -46,6 +46,30 @@ static int renew(plan *p) {
     return nevh_scene_start(p->scene, p->q, p->p);
 }
 
+/* The largest frequency of the drives; its effect. */
+static double drive_of(const plan *p, const char **effect) {
+    nevh_timing *timing =
+        nevh_timing_new(p->system, p->run->t_start, p->t_end, p->q, p->p);
+    double frequency = nevh_timing_frequency(tool_owned(timing), effect);
+    nevh_timing_free(timing);
+    return frequency;
+}
+
+/* Half a turn between the two points that are nearest: faster drives look like
+   slower ones.  Infinite where the first values have such. */
+static double fastest_of(const fitting *f) {
+    static const double half_turn = 3.141592653589793;
+    const measured *m = f->data;
+    double gap = m->points ? m->t[m->points - 1] : 0, rounding = 1e-12 * gap;
+    const char *effect;
+    for (size_t i = 1; i < m->points; i++)
+        if (m->t[i] - m->t[i - 1] > rounding)
+            gap = fmin(gap, m->t[i] - m->t[i - 1]);
+    double fastest = gap > 0 ? half_turn / gap : INFINITY;
+    return f->plan->time && drive_of(f->plan, &effect) < fastest ? fastest
+                                                                 : INFINITY;
+}
+
 int fit_begin(fitting *f, const options *o) {
     list names = {0};
     int status = TOOL_OK;
@@ -71,8 +95,10 @@ int fit_begin(fitting *f, const options *o) {
         v->scale = v->first != 0 ? fabs(v->first) : 1;
     }
     list_free(&names);
+    f->held = f->count;
     if (!status && renew(f->plan))
         status = scene_report(f->plan->scene, o);
+    f->fastest = status ? INFINITY : fastest_of(f);
     return status;
 }
 
@@ -153,12 +179,32 @@ static bool follow(fitting *f, nevh_stepper *s, double residual[]) {
     return whole;
 }
 
+/* Looked at where numbers are far from the first ones. */
+static bool is_too_fast(fitting *f, const double x[]) {
+    static const double far = 1.2;
+    const char *effect = "";
+    bool look = false;
+    for (size_t i = 0; i < f->count; i++)
+        look = look || fabs(x[i]) > far;
+    double drive =
+        look && isfinite(f->fastest) ? drive_of(f->plan, &effect) : 0;
+    if (!(drive > f->fastest))
+        return false;
+    free(f->why);
+    f->why = text_print("%s has the frequency %.4g, and these points show "
+                        "none above %.4g",
+                        effect, drive, f->fastest);
+    return true;
+}
+
 bool fit_orbit(fitting *f, const double x[], double residual[]) {
     for (size_t i = 0; i < f->count; i++)
         if (assign(f, &f->item[i], x[i] * f->item[i].scale))
             return fails(f, nevh_scene_message(f->plan->scene));
     if (renew(f->plan))
         return fails(f, nevh_scene_message(f->plan->scene));
+    if (is_too_fast(f, x))
+        return false;
     nevh_stepper *s = plan_stepper(f->plan, f->now.integrator);
     bool good = nevh_stepper_status(s) ? fails(f, nevh_stepper_message(s))
                                        : follow(f, s, residual);

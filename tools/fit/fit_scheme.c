@@ -39,12 +39,60 @@ bool fit_is_given(const fitting *f) {
            f->now.dt == f->given.dt && f->now.tolerance == f->given.tolerance;
 }
 
+double fit_own_rounding(const fitting *f) {
+    static const double safety = 3; /* it is another one in each orbit */
+    return safety * f->rounding;
+}
+
 double fit_rounding(const fitting *f) {
-    return FIT_ROUNDING * f->spread;
+    return fmax(FIT_ROUNDING * f->spread, fit_own_rounding(f));
 }
 
 bool fit_is_rounding(const fitting *f, double chi_square) {
     return sqrt(chi_square) <= fit_rounding(f);
+}
+
+/* Exchanges the gradients of orbits and those that were asked for, if others. */
+static void exchange_gradients(fitting *f) {
+    list own = f->plan->gradients;
+    if (f->asked.count) {
+        f->plan->gradients = f->asked;
+        f->asked = own;
+    }
+}
+
+static double length_between(const double a[], const double b[], size_t n) {
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return sqrt(sum);
+}
+
+void fit_find_rounding(fitting *f, const double x[]) {
+    enum { DIGITS = 2, TRIALS = 2 * DIGITS + 1 };
+    static const double last_digit = 4e-16;
+    size_t n = f->residuals;
+    double *r = tool_allocate(2 * n + f->count, sizeof *r), *other = r + n;
+    double *at = other + n;
+    bool good = fit_orbit(f, x, r);
+    f->rounding = 0;
+    for (int i = 0; good && i < TRIALS; i++) {
+        double by = (i - DIGITS) * last_digit; /* 0: the gradients alone */
+        for (size_t k = 0; k < f->count; k++)
+            at[k] = x[k] != 0 ? x[k] * (1 + by) : by;
+        if (by == 0)
+            exchange_gradients(f);
+        if (fit_orbit(f, at, other))
+            f->rounding = fmax(f->rounding, length_between(r, other, n));
+        if (by == 0)
+            exchange_gradients(f);
+    }
+    free(r);
+}
+
+bool fit_is_chaotic(const fitting *f) {
+    static const double most = 0.1;
+    return f->spread > 0 && f->rounding > most * f->spread;
 }
 
 void fit_scheme_words(const fitting *f, list *words) {

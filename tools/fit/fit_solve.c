@@ -2,68 +2,20 @@
 
    A fit to a long orbit has many local minima, where the model is a turn ahead.
    So it is made twice: from the first values, and by and by, from the first
-   eighth of the points to all of them; the better of the two counts.
+   eighth of the points to all of them; the second counts where noise alone would not
+   make it so much better.
 
    Its orbits are then computed by a finer scheme, and it is made again, until that
    changes no number by more than a tenth of its error. */
 #include "fit_private.h"
 #include <gsl/gsl_blas.h>
-#include <gsl/gsl_cdf.h>
 #include <gsl/gsl_linalg.h>
-#include <gsl/gsl_multifit_nlinear.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_ITERATIONS = 100 };
-static const double tolerance = 1e-9;  /* of the numbers, relative */
-static const double difference = 6e-6; /* cube root of the rounding */
-static const double least_size = 0.01; /* of a number, in its scale */
-static const double no_orbit = 1e100;  /* residuals of a step too far */
 static const double undetermined = 1e-6;
 static const double no_effect = 1e-8; /* what rounding makes is below */
-
-static gsl_vector *new_vector(size_t n) {
-    return tool_owned(gsl_vector_alloc(n));
-}
-
-static gsl_matrix *new_matrix(size_t rows, size_t columns) {
-    return tool_owned(gsl_matrix_alloc(rows, columns));
-}
-
-/* The model less the data, as GSL has it; a trial that has no orbit is worse than
-   any that has. */
-static int residuals(const gsl_vector *x, void *data, gsl_vector *r) {
-    fitting *f = data;
-    if (fit_orbit(f, x->data, r->data))
-        gsl_vector_scale(r, -1);
-    else
-        gsl_vector_set_all(r, no_orbit);
-    return GSL_SUCCESS;
-}
-
-/* Central differences. */
-static int derivatives(const gsl_vector *x, void *data, gsl_matrix *j) {
-    fitting *f = data;
-    size_t n = f->residuals;
-    double *at = tool_allocate(f->count + 2 * n, sizeof *at);
-    double *after = at + f->count, *before = after + n;
-    bool good = true;
-    memcpy(at, x->data, f->count * sizeof *at);
-    for (size_t k = 0; good && k < f->count; k++) {
-        double h = difference * fmax(fabs(at[k]), least_size), middle = at[k];
-        volatile double right = middle + h, left = middle - h;
-        at[k] = right;
-        good = fit_orbit(f, at, after);
-        at[k] = left;
-        good = good && fit_orbit(f, at, before);
-        at[k] = middle;
-        for (size_t i = 0; good && i < n; i++)
-            gsl_matrix_set(j, i, k, (before[i] - after[i]) / (right - left));
-    }
-    free(at);
-    return good ? GSL_SUCCESS : GSL_EFAILED;
-}
 
 /* Relative changes along a direction: "l by 1 % and g by 1 %", the first being 1;
    of numbers that are 0 there are none, and names alone are told. */
@@ -95,8 +47,8 @@ static void tell_direction(fitting *f, const gsl_vector *along) {
    independent. */
 static bool determined(fitting *f, const gsl_matrix *jacobian) {
     size_t p = f->count;
-    gsl_matrix *a = new_matrix(f->residuals, p), *v = new_matrix(p, p);
-    gsl_vector *s = new_vector(p), *work = new_vector(p);
+    gsl_matrix *a = fit_matrix(f->residuals, p), *v = fit_matrix(p, p);
+    gsl_vector *s = fit_vector(p), *work = fit_vector(p);
     double *length = tool_allocate(p, sizeof *length), longest = 0;
     bool good = true;
     gsl_matrix_memcpy(a, jacobian);
@@ -136,75 +88,6 @@ static bool determined(fitting *f, const gsl_matrix *jacobian) {
     return good;
 }
 
-/* The least squares solution of J x = d, or of its part that x does not explain,
-   in d. */
-static void explain(const gsl_matrix *jacobian, gsl_vector *d, gsl_matrix *c,
-                    gsl_vector *x) {
-    gsl_vector *slope = new_vector(x->size);
-    gsl_multifit_nlinear_covar(jacobian, 0, c);
-    gsl_blas_dgemv(CblasTrans, 1, jacobian, d, 0, slope);
-    gsl_blas_dgemv(CblasNoTrans, 1, c, slope, 0, x);
-    gsl_blas_dgemv(CblasNoTrans, -1, jacobian, x, 1, d);
-    gsl_vector_free(slope);
-}
-
-/* Whether the step of Gauss and Newton lowers the squares by rounding alone: GSL's
-   driver fails where the first values are the minimum. */
-static bool at_minimum(const fitting *f,
-                       const gsl_multifit_nlinear_workspace *w) {
-    static const double part = 1e-5;
-    gsl_matrix *c = new_matrix(f->count, f->count);
-    gsl_vector *x = new_vector(f->count), *d = new_vector(f->residuals);
-    gsl_vector_memcpy(d, gsl_multifit_nlinear_residual(w));
-    double before = gsl_blas_dnrm2(d);
-    bool exact = fit_is_rounding(f, before * before);
-    explain(gsl_multifit_nlinear_jac(w), d, c, x);
-    double gain = before - gsl_blas_dnrm2(d);
-    gsl_matrix_free(c);
-    gsl_vector_free(x);
-    gsl_vector_free(d);
-    return exact || gain <= part * part * before;
-}
-
-/* One fit to the first `used` points.
-   x        in and out
-   returns  0, and w holds the result; a status of GSL */
-static int fit_part(fitting *f, size_t used, gsl_vector *x, double *chi_square,
-                    gsl_multifit_nlinear_workspace **w) {
-    gsl_multifit_nlinear_parameters how =
-        gsl_multifit_nlinear_default_parameters();
-    f->used = used;
-    f->residuals = used * f->data->columns;
-    gsl_multifit_nlinear_fdf what = {.f = residuals,
-                                     .df = derivatives,
-                                     .n = f->residuals,
-                                     .p = f->count,
-                                     .params = f};
-    int info = 0;
-    *w = tool_owned(gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &how,
-                                               f->residuals, f->count));
-    free(f->why);
-    f->why = NULL;
-    int status = gsl_multifit_nlinear_init(x, &what, *w);
-    if (!status && f->why)
-        status = GSL_EFAILED;
-    if (!status)
-        status = gsl_multifit_nlinear_driver(
-            MOST_ITERATIONS, tolerance, tolerance, 0, NULL, NULL, &info, *w);
-    f->iterations = gsl_multifit_nlinear_niter(*w);
-    gsl_vector *r = gsl_multifit_nlinear_residual(*w);
-    gsl_blas_ddot(r, r, chi_square);
-    if (status == GSL_ENOPROG || /* rounding is all that is left */
-        (status == GSL_EMAXITER && at_minimum(f, *w)))
-        status = GSL_SUCCESS;
-    if (status != GSL_EFAILED) { /* an orbit that failed was a trial's */
-        free(f->why);
-        f->why = NULL;
-    }
-    gsl_vector_memcpy(x, gsl_multifit_nlinear_position(*w));
-    return status;
-}
-
 static void start_values(const fitting *f, gsl_vector *x) {
     for (size_t k = 0; k < f->count; k++)
         gsl_vector_set(x, k, f->item[k].first / f->item[k].scale);
@@ -212,7 +95,7 @@ static void start_values(const fitting *f, gsl_vector *x) {
 
 /* By and by; parts that fail leave the values as they are. */
 static void approach(fitting *f, gsl_vector *x) {
-    gsl_vector *before = new_vector(f->count);
+    gsl_vector *before = fit_vector(f->count);
     start_values(f, x);
     for (size_t part = 8; part > 1; part /= 2) {
         gsl_multifit_nlinear_workspace *w;
@@ -221,7 +104,7 @@ static void approach(fitting *f, gsl_vector *x) {
         if (used * f->data->columns < 2 * f->count + 2)
             continue;
         gsl_vector_memcpy(before, x);
-        if (fit_part(f, used, x, &chi_square, &w) ||
+        if (fit_minimise(f, used, x, &chi_square, &w) ||
             !determined(f, gsl_multifit_nlinear_jac(w)))
             gsl_vector_memcpy(x, before);
         free(f->undetermined);
@@ -229,39 +112,6 @@ static void approach(fitting *f, gsl_vector *x) {
         gsl_multifit_nlinear_free(w);
     }
     gsl_vector_free(before);
-}
-
-/* Of one residual. */
-static double variance(const fitting *f, double chi_square) {
-    double least = fit_rounding(f), degrees = (double)(f->residuals - f->count);
-    return f->sigma_known || f->data->sigma
-               ? 1
-               : fmax(chi_square, least * least) / degrees;
-}
-
-static void take_errors(fitting *f, const gsl_matrix *jacobian) {
-    size_t p = f->count;
-    double degrees = (double)(f->residuals - p);
-    double scale = variance(f, f->chi_square);
-    bool longer = f->evidence == FIT_WIDENED || f->evidence == FIT_EITHER;
-    double wide = f->sigma_known || f->data->sigma
-                      ? gsl_cdf_ugaussian_Pinv(0.975)
-                      : gsl_cdf_tdist_Pinv(0.975, degrees);
-    gsl_matrix *c = new_matrix(p, p);
-    gsl_multifit_nlinear_covar(jacobian, 0, c);
-    f->correlation = tool_allocate(p * p, sizeof *f->correlation);
-    for (size_t k = 0; k < p; k++) {
-        varied *v = &f->item[k];
-        v->error = sqrt(scale * gsl_matrix_get(c, k, k)) * v->scale;
-        double more = longer ? fabs(v->moved) : 0;
-        v->low = v->value - wide * v->error - more;
-        v->high = v->value + wide * v->error + more;
-        for (size_t i = 0; i < p; i++)
-            f->correlation[k * p + i] =
-                gsl_matrix_get(c, k, i) /
-                sqrt(gsl_matrix_get(c, k, k) * gsl_matrix_get(c, i, i));
-    }
-    gsl_matrix_free(c);
 }
 
 /* Of each column, in its own unit. */
@@ -277,17 +127,6 @@ static void take_rms(fitting *f, const gsl_vector *residual) {
         f->rms[k] = sqrt(f->rms[k] / (double)m->points);
 }
 
-static int take_result(fitting *f, const gsl_vector *x,
-                       gsl_multifit_nlinear_workspace *w) {
-    if (!determined(f, gsl_multifit_nlinear_jac(w)))
-        return TOOL_FAILED;
-    take_rms(f, gsl_multifit_nlinear_residual(w));
-    take_errors(f, gsl_multifit_nlinear_jac(w));
-    /* The plan is that of the result. */
-    f->residual = tool_allocate(f->residuals, sizeof *f->residual);
-    return fit_orbit(f, x->data, f->residual) ? TOOL_OK : TOOL_FAILED;
-}
-
 /* A fit to all points. */
 typedef struct {
     gsl_vector *x;
@@ -301,7 +140,7 @@ typedef struct {
 /* x  is taken over */
 static attempt attempt_from(fitting *f, gsl_vector *x) {
     attempt a = {.x = x};
-    a.status = fit_part(f, f->data->points, a.x, &a.chi_square, &a.w);
+    a.status = fit_minimise(f, f->data->points, a.x, &a.chi_square, &a.w);
     a.iterations = f->iterations;
     a.why = f->why;
     f->why = NULL;
@@ -314,19 +153,23 @@ static void attempt_free(attempt *a) {
     free(a->why);
 }
 
-/* The better of two; the other is freed. */
-static attempt better(attempt a, attempt b) {
-    bool second = !b.status && (a.status || b.chi_square < a.chi_square);
+/* The first, which is nearer to the first values, unless the second is lower by what
+   noise does not make: where there are many minima, the lowest is often another one
+   than that of the truth.  The other is freed. */
+static attempt better(const fitting *f, attempt a, attempt b) {
+    static const double beyond_noise = 16; /* four standard deviations */
+    double by = beyond_noise * fit_variance(f, b.chi_square);
+    bool second = !b.status && (a.status || b.chi_square < a.chi_square - by);
     attempt_free(second ? &a : &b);
     return second ? b : a;
 }
 
 static attempt attempt_all(fitting *f) {
-    gsl_vector *x[2] = {new_vector(f->count), new_vector(f->count)};
+    gsl_vector *x[2] = {fit_vector(f->count), fit_vector(f->count)};
     start_values(f, x[0]);
     attempt a = attempt_from(f, x[0]);
     approach(f, x[1]);
-    return better(a, attempt_from(f, x[1]));
+    return better(f, a, attempt_from(f, x[1]));
 }
 
 /* What orbits of another scheme change. */
@@ -339,11 +182,12 @@ typedef struct {
 static void judge_change(fitting *f, const attempt *a, gsl_vector *d,
                          change *result) {
     static const double part = 0.1, phase = 0.1;
-    gsl_matrix *c = new_matrix(f->count, f->count);
-    gsl_vector *x = new_vector(f->count);
-    double s = variance(f, a->chi_square), all = gsl_blas_dnrm2(d), worst = 0;
+    gsl_matrix *c = fit_matrix(f->count, f->count);
+    gsl_vector *x = fit_vector(f->count);
+    double s = fit_variance(f, a->chi_square), all = gsl_blas_dnrm2(d),
+           worst = 0;
     double level = fmax(sqrt(a->chi_square), fit_rounding(f));
-    explain(gsl_multifit_nlinear_jac(a->w), d, c, x);
+    fit_explain(gsl_multifit_nlinear_jac(a->w), d, c, x);
     for (size_t k = 0; k < f->count; k++) {
         double moved = -gsl_vector_get(x, k);
         double error = sqrt(s * gsl_matrix_get(c, k, k));
@@ -366,7 +210,7 @@ static void judge_change(fitting *f, const attempt *a, gsl_vector *d,
 static change compare_scheme(fitting *f, const attempt *a,
                              const fit_scheme *finer) {
     change result = {0};
-    gsl_vector *d = new_vector(f->residuals);
+    gsl_vector *d = fit_vector(f->residuals);
     f->now = *finer;
     result.orbit = fit_orbit(f, a->x->data, d->data);
     if (result.orbit) {
@@ -376,12 +220,6 @@ static change compare_scheme(fitting *f, const attempt *a,
     }
     gsl_vector_free(d);
     return result;
-}
-
-static gsl_vector *copy_vector(const gsl_vector *x) {
-    gsl_vector *copy = new_vector(x->size);
-    gsl_vector_memcpy(copy, x);
-    return copy;
 }
 
 /* Levels of smaller errors, until the next one changes nothing.
@@ -402,9 +240,9 @@ static bool refine(fitting *f, attempt *a, bool stepwise) {
         f->evidence = c.small ? FIT_SMALL : FIT_WIDENED;
         if (c.small)
             return true;
-        attempt b = attempt_from(f, copy_vector(a->x));
+        attempt b = attempt_from(f, fit_vector_copy(a->x));
         attempt_free(a);
-        *a = c.far || b.status ? better(b, attempt_all(f)) : b;
+        *a = c.far || b.status ? better(f, b, attempt_all(f)) : b;
         if (a->status)
             return true;
     }
@@ -427,12 +265,12 @@ static void weigh_given(fitting *f, attempt *a, const gsl_vector *x,
         return;
     f->now = f->given;
     attempt_free(a);
-    *a = attempt_from(f, copy_vector(x));
+    *a = attempt_from(f, fit_vector_copy(x));
 }
 
 static void check_scheme(fitting *f, attempt *a) {
     static const uint64_t dearer = 300, least = 100000;
-    gsl_vector *x = copy_vector(a->x);
+    gsl_vector *x = fit_vector_copy(a->x);
     double chi_square = a->chi_square;
     f->most = dearer * f->cost + least;
     if (!refine(f, a, false) && f->evidence == FIT_UNCHECKED)
@@ -445,18 +283,70 @@ static void check_scheme(fitting *f, attempt *a) {
     f->most = 0;
 }
 
+static void take_values(fitting *f, const attempt *a) {
+    f->chi_square = a->chi_square;
+    f->iterations = a->iterations;
+    for (size_t k = 0; k < f->count; k++)
+        f->item[k].value = gsl_vector_get(a->x, k) * f->item[k].scale;
+}
+
+/* Whether it is so near that it is no other minimum. */
+static bool is_same(const fitting *f, const attempt *a) {
+    static const double near = 2; /* errors */
+    bool same = !a->status;
+    for (size_t k = 0; k < f->count; k++) {
+        const varied *v = &f->item[k];
+        double x = gsl_vector_get(a->x, k) * v->scale;
+        same = same && fabs(x - v->value) <= near * v->error;
+    }
+    return same;
+}
+
+/* From lower sums that were found on the way to the ends of intervals, which are
+   taken over.
+   returns  whether they lead to numbers that are better */
+static bool improve(fitting *f, attempt *a, gsl_vector *lower) {
+    attempt b = attempt_from(f, lower), before = *a;
+    if (is_same(f, &b)) {
+        attempt_free(a);
+        *a = b;
+    } else
+        *a = better(f, *a, b);
+    return a->x != before.x;
+}
+
+static int take_result(fitting *f, attempt *a) {
+    enum { MOST = 3 };
+    for (int i = 1;; i++) {
+        take_values(f, a);
+        if (!determined(f, gsl_multifit_nlinear_jac(a->w)))
+            return TOOL_FAILED;
+        gsl_vector *lower =
+            fit_intervals(f, a->x, gsl_multifit_nlinear_jac(a->w));
+        if (lower && i == MOST)
+            gsl_vector_free(lower);
+        if (!lower || i == MOST || !improve(f, a, lower))
+            break;
+    }
+    take_rms(f, gsl_multifit_nlinear_residual(a->w));
+    /* The plan is that of the result. */
+    f->residual = tool_allocate(f->residuals, sizeof *f->residual);
+    return fit_orbit(f, a->x->data, f->residual) ? TOOL_OK : TOOL_FAILED;
+}
+
 int fit_solve(fitting *f) {
     attempt a = attempt_all(f);
-    if (!a.status)
+    fit_find_rounding(f, a.x->data);
+    if (!a.status && !fit_is_chaotic(f)) {
         check_scheme(f, &a);
-    f->chi_square = a.chi_square;
-    f->iterations = a.iterations;
-    for (size_t k = 0; k < f->count; k++)
-        f->item[k].value = gsl_vector_get(a.x, k) * f->item[k].scale;
+        fit_find_rounding(f, a.x->data);
+    }
+    take_values(f, &a);
     free(f->why);
     f->why = a.why;
     a.why = NULL;
-    int result = a.status ? TOOL_FAILED : take_result(f, a.x, a.w);
+    int result =
+        a.status || fit_is_chaotic(f) ? TOOL_FAILED : take_result(f, &a);
     attempt_free(&a);
     return result;
 }

@@ -11,8 +11,7 @@ quantities columns_new(const plan *p) {
     size_t count = nevh_scene_shown_count(p->scene, NEVH_OBSERVABLES);
     quantities c = {.plan = p,
                     .observed = tool_allocate(count, sizeof(double)),
-                    .field = nevh_field_new(p->system, &values),
-                    .scale = plan_energy_scale(p)};
+                    .field = nevh_field_new(p->system, &values)};
     double t = p->run->t_start;
     if (nevh_field_value(c.field, 1, &t, p->q, p->p, &c.start))
         c.start = NAN;
@@ -88,6 +87,10 @@ int columns_add(quantities *c, const char *name) {
         return tool_refuse("energy_error: H of this scene changes with time or "
                            "friction; --plot-kind energy shows the error of "
                            "the balance");
+    bool relative =
+        is.kind == COLUMN_ENERGY_ERROR || is.kind == COLUMN_SHADOW_ERROR;
+    if (relative && !(c->scale > 0))
+        c->scale = plan_energy_scale(c->plan);
     quantity *more = tool_allocate(c->count + 1, sizeof *more);
     if (c->count)
         memcpy(more, c->item, c->count * sizeof *more);

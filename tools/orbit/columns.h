@@ -28,8 +28,8 @@ typedef struct {
     quantity *item;
     size_t count;
     double *observed;
-    nevh_field *field; /* of values of H */
-    double start, scale;
+    nevh_field *field;   /* of values of H */
+    double start, scale; /* of the energy; scale: of errors alone */
     nevh_shadow *shadow; /* of the scheme followed; NULL: none is shown */
     double shadow_start;
 } quantities;

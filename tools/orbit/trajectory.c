@@ -196,11 +196,11 @@ static void doubt(trajectory *r) {
     static const double large = 0.1, all = 1; /* of the energy */
     static const double most_steps = 3e5;     /* of a second run */
     const plan *p = r->plan;
-    double scale = plan_energy_scale(p);
     bool shorter = fabs(p->t_end - p->run->t_start) <= most_steps * p->dt[0];
     list changed = {0};
     if (r->to.mute || r->to.take)
         return;
+    double scale = plan_energy_scale(p);
     conserved_warn(p, &changed);
     for (size_t i = 0; i < changed.count; i++)
         warn(r, changed.item[i]);
