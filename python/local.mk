@@ -9,6 +9,7 @@ python_package = \
 	python/nevh/__init__.pyi \
 	python/nevh/_arrays.py \
 	python/nevh/_commands.py \
+	python/nevh/_events.py \
 	python/nevh/_functions.py \
 	python/nevh/_graph.py \
 	python/nevh/_graph_text.py \

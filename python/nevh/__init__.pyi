@@ -265,7 +265,8 @@ def solve(H: Any, t_span: Sequence[float] | None = None, y0: Sequence[float] |
         Any] | None = None, args: Sequence[Any] = (), coordinates: Sequence[str] | None =
         None, with_effects: str | Sequence[str] = (), without_effects: str | Sequence[str]
         = (), params: Any = None, observe: Callable[[float, Any], Any] | None = None,
-        every: int = 1, check: bool = True) -> Result: ...
+        every: int = 1, events: Any = None, dense_output: bool = False, max_step: float |
+        None = None, check: bool = True) -> Result: ...
 def sweep(scene: str | PathLike[str] | Scene, vary: Any = None, outcomes: str |
         Sequence[str] | None = None, integrator: str | None = None, *, dt: float | None =
         None, t_end: float | None = None, rtol: float | None = None, gradient: str | None

@@ -11,6 +11,7 @@ import os
 import signal
 import threading
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Callable, Mapping, Sequence
 
 from ._library import (_check, _gradient, _integrator, _JudgedRun, _lib,
@@ -18,6 +19,7 @@ from ._library import (_check, _gradient, _integrator, _JudgedRun, _lib,
 from ._arrays import _cut, np, _numbers, _positive, _real, Result, _table, _whole_from_one
 from ._scene import Scene
 from ._functions import _Subject
+from ._events import DenseOutput, Events
 
 
 def _set_gradient_steps(o, scene, given, n, what):
@@ -287,6 +289,79 @@ def _times_to_keep(t_eval, t0, t_end):
     return times
 
 
+def _watch_both(events, observe, every):
+    """An observer of both: events see all steps, `observe` what it asked for."""
+    taken = [-1]
+
+    def watch(t, y):
+        taken[0] += 1
+        stops = observe is not None and not taken[0] % every and observe(t, y)
+        return events.watch(t, y) or stops
+    return watch
+
+
+def _with_steps(t_eval, steps):
+    """The times of both in the order of a run."""
+    ahead = len(steps) < 2 or steps[1] > steps[0]
+    return sorted({float(t) for t in t_eval} | {float(t) for t in steps},
+                  reverse=not ahead)
+
+
+def _find(result, plan, h, t_eval, events, dense_output):
+    """Adds sol and the zeros of events to a result; leaves the times that were asked."""
+    sol = DenseOutput(plan, h, result.t, result.y)
+    end = None
+    result["t_events"] = result["y_events"] = None
+    if events:
+        result["t_events"], result["y_events"], end = events.find(sol)
+    asked = {float(t) for t in t_eval}
+    rows = [k for k, t in enumerate(sol._times) if t in asked and
+            (end is None or (t - end) * h < 0)]
+    times = [sol._times[k] for k in rows]
+    states = [[row[k] for k in rows] for row in sol._states]
+    if end is not None:
+        final = list(sol(end))
+        times.append(end)
+        states = [row + [x] for row, x in zip(states, final)]
+        result.update(status=1, success=True, t_reached=end, y_reached=final,
+                      message="A termination event occurred.")
+    if np is not None:
+        times, states = np.array(times), np.array(states).reshape(len(states), -1)
+        result["y_reached"] = np.array(result["y_reached"])
+    result.update(t=times, y=states, sol=sol if dense_output else None)
+
+
+def _solve_members(H, t_span, y0, given):
+    """The orbits of an ensemble: y has the shape (2n, members, times)."""
+    if np is None:
+        raise ImportError("an ensemble needs NumPy; nevh.sweep gives outcomes of many")
+    y0 = np.asarray(y0, float)
+    if given["events"] is not None or given["dense_output"]:
+        raise Refused("events and dense_output are of one orbit: y0 has the shape %s"
+                      % (y0.shape,))
+    if isinstance(H, (str, os.PathLike)):  # it is read once
+        H = Scene(H, *(given.pop(name) for name in ("parameters", "coordinates",
+                                                    "with_effects", "without_effects")))
+    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+        # A function of Python is traced once: the first orbit is made alone.
+        runs = [solve(H, t_span, y0[:, 0], **given)] if y0.shape[1] else []
+        runs += pool.map(lambda start: solve(H, t_span, start, **given), y0.T[1:])
+    if not runs:
+        raise Refused("y0 has the shape %s: there is no member" % (y0.shape,))
+    kept = min(len(run.t) for run in runs)
+    same = {name: runs[0][name] for name in ("method", "dt", "tolerance", "gradient",
+                                             "names")}
+    first = next((run for run in runs if run.status < 0), runs[0])
+    return Result(
+        t=runs[0].t[:kept], y=np.stack([run.y[:, :kept] for run in runs], 1),
+        nfev=sum(run.nfev for run in runs), status=first.status, success=first.success,
+        message=first.message, energy_error=np.array([run.energy_error for run in runs]),
+        energy_drift=np.array([run.energy_drift for run in runs]),
+        t_reached=np.array([run.t_reached for run in runs]),
+        y_reached=np.stack([run.y_reached for run in runs], 1), members=runs, sol=None,
+        **same)
+
+
 def solve(H: Any, t_span: Sequence[float] | None = None,
           y0: Sequence[float] | Mapping[str, float | str] | None = None,
           method: str | type | None = None, *, dt: float | None = None,
@@ -298,7 +373,8 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
           with_effects: str | Sequence[str] = (),
           without_effects: str | Sequence[str] = (), params: Any = None,
           observe: Callable[[float, Any], Any] | None = None, every: int = 1,
-          check: bool = True) -> Result:
+          events: Any = None, dense_output: bool = False,
+          max_step: float | None = None, check: bool = True) -> Result:
     """Follow the orbit of a Hamiltonian from t_span[0] to t_span[1].
 
     H        H as text ("p_x^2/2 + k*x^2/2"), a scene (see Scene), a function of Python
@@ -307,7 +383,8 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
              params).  A function of Python is traced: it runs as a formula.  One that
              cannot be, for it compares values or is no formula, runs as values,
              slowly, with a warning that names the line
-    y0       coordinates, then momenta; of scenes also {name: value}, None: as they say
+    y0       coordinates, then momenta; of scenes also {name: value}, None: as they say.
+             An array (2n, members) is an ensemble: y has the shape (2n, members, times)
     method   a name of nevh.integrators() or of SciPy's DOP853 and RK45.  None: the
              first of the scene; else with dt verlet, or gauss4 where H is no sum of
              T(p) and V(q); without dt taylor, or dop853 for functions in C and for
@@ -324,19 +401,29 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
              default: the scene's, else chosen where the orbit starts
     parameters, coordinates, with_effects, without_effects: see Scene
     observe  called with (t, y) after `every` steps; what is true ends the run
+    events   a function g(t, y, *args), or several, whose zeros are found: g.terminal =
+             True ends the run there, g.direction = 1 or -1 counts passages up or down
+    dense_output   True: sol(t) of the result is the state at any time of the run
+    max_step       the longest step, where the method adapts
     check    False: a step that fails gives a result with status -1, as SciPy's
 
     Returns t, y (a row a variable), nfev (gradients), status (0: the end; 1: stopped;
     -1: failed), message, success, as SciPy does; energy_error (the largest over the
     run, relative to energy_scale), verdict (of nevh.verdicts; what the run leaves open
     is found as nevh compare finds it, by a longer run, when it is first asked for; but
-    for functions that are no formula), energy_drift (a unit of time), hamiltonian_evals, t_reached and y_reached (the last good state), method,
-    dt, tolerance, gradient (None where none is taken), names.
+    for functions that are no formula), energy_drift (a unit of time), hamiltonian_evals,
+    t_reached and y_reached (the last good state), method, dt, tolerance, gradient (None
+    where none is taken), names; t_events and y_events, a list for each event, and sol.
 
     Raises Refused for input that is wrong, Failed where a step fails, and what
     `observe` or H raised; the orbit so far is then the exception's `result`.
     """
-    start = None
+    if getattr(y0, "ndim", 1) == 2 or (isinstance(y0, (list, tuple)) and y0 and
+                                       isinstance(y0[0], (list, tuple))):
+        given = dict(locals())
+        del given["H"], given["t_span"], given["y0"]
+        return _solve_members(H, t_span, y0, given)
+    start, found = None, Events(events, args)
     if hasattr(H, "_problem"):  # a HGrad
         H, gradient, gradient_step, given = H._problem(gradient, gradient_step)
         parameters, args, coordinates, with_effects, without_effects, params = given
@@ -379,6 +466,10 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
     dt = None if dt is None else _positive("dt", dt)
     methods = [method] if method else _choose(subject, dt, t0, y)
     dt, tolerance = _steps(methods[0], dt, rtol, atol, t_end - t0, y[0])
+    if max_step is not None and dt > _positive("max_step", max_step):
+        if not tolerance:
+            raise Refused("dt = %g is above max_step = %g" % (dt, max_step))
+        dt = float(max_step)
     h = dt if t_end > t0 else -dt
     if gradient:
         _gradient(gradient)
@@ -396,9 +487,15 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
         t_eval = _times_of_steps(t0, t_end, h)
     else:
         t_eval = _times_to_keep(t_eval, t0, t_end)
-    if observe is None:
+    if found:
+        observe, every = _watch_both(found, observe, every), 1
+    elif observe is None:
         every = 16 if tolerance else 512
-    status, result = _run_plan(plan, t0, t_end, h, t_eval, y, observe, every)
+    keeps_steps = bool(found) or dense_output
+    kept = _with_steps(t_eval, _times_of_steps(t0, t_end, h)) if keeps_steps else t_eval
+    status, result = _run_plan(plan, t0, t_end, h, kept, y, observe, every)
+    if keeps_steps and len(result.t):
+        _find(result, plan, h, t_eval, found, dense_output)
     names = scene.names if scene else None
     result.update(method=method, dt=dt, tolerance=tolerance, gradient=gradient,
                   names=names)

@@ -365,8 +365,8 @@ def test_arrays_of_any_kind():
         assert (orbit.y == asked[0].y).all()
     none = nevh.solve(PENDULUM, (0, 3), [2, 0], "verlet", dt=0.1, t_eval=[])
     assert none.y.shape == (2, 0)
-    raised(nevh.Refused, "y0 has the shape (2, 1)", nevh.solve, PENDULUM, (0, 1),
-           np.ones((2, 1)), "verlet", dt=0.1)
+    raised(nevh.Refused, "y0 has the shape (2, 1, 1)", nevh.solve, PENDULUM, (0, 1),
+           np.ones((2, 1, 1)), "verlet", dt=0.1)
     loose = nevh.solve(PENDULUM, (0, 3), [2, 0], "RK45", rtol=1e-3, atol=[1e-7, 1e-8])
     assert loose.tolerance == 5e-9
     G = nevh.HGrad(PENDULUM)
@@ -722,6 +722,85 @@ def test_steps_thrown_about_warn():
         assert result.success
         assert len(seen) == (result.energy_error > 1), (H, result.energy_error)
         assert all(one.category is RuntimeWarning for one in seen)
+
+
+def passes_zero(t, y):
+    return y[0]
+
+
+def test_events_and_dense_output():
+    """The harmonic oscillator, whose times are known; forwards, backwards, by a method
+    that adapts and one that does not."""
+    for span, named, tolerance in (((0, 20), dict(rtol=1e-12), 1e-9),
+                                   ((0, -20), dict(rtol=1e-12), 1e-9),
+                                   ((0, 20), dict(method="gauss8", dt=0.3), 1e-8)):
+        passes_zero.direction, passes_zero.terminal = 0, False
+        orbit = nevh.solve("p^2/2 + q^2/2", span, [1, 0], events=passes_zero,
+                           dense_output=True, **named)
+        sign = math.copysign(1, span[1])
+        known = [sign * (k + 0.5) * math.pi for k in range(6)]
+        assert close(list(orbit.t_events[0]), known, tolerance), orbit.t_events
+        assert all(abs(state[0]) < tolerance for state in orbit.y_events[0])
+        for t in (0.0, sign * 0.123, sign * 7.7, span[1]):
+            assert close(list(orbit.sol(t)), [math.cos(t), -math.sin(t)], tolerance)
+        assert len(orbit.sol([0, sign])) == 2 and len(orbit.sol([0, sign])[0]) == 2
+        raised(nevh.Refused, "not within the run", orbit.sol, span[1] * 1.01)
+        passes_zero.direction = 1
+        rising = nevh.solve("p^2/2 + q^2/2", span, [1, 0], events=passes_zero, **named)
+        assert close(list(rising.t_events[0]), known[1::2], tolerance)
+        passes_zero.terminal = 2
+        ended = nevh.solve("p^2/2 + q^2/2", span, [1, 0], events=[passes_zero], **named)
+        assert ended.status == 1 and ended.success
+        assert abs(ended.t[-1] - rising.t_events[0][1]) < tolerance
+        assert abs(ended.y[0][-1]) < tolerance and ended.t_reached == ended.t[-1]
+        assert ended.sol is None and orbit.status == 0
+    few = nevh.solve("p^2/2 + q^2/2", (0, 20), [1, 0], events=passes_zero,
+                     t_eval=[1, 9, 17])
+    assert close(list(few.t), [1, 9, known[3]], 1e-8)
+    raised(TypeError, "an event is a function", nevh.solve, PENDULUM, (0, 1), [1, 0],
+           events=3)
+
+
+def test_events_as_scipys():
+    needs("NumPy")
+    needs("SciPy")
+
+    def over(t, y, k):
+        return y[0] - 0.3 * k
+
+    def pendulum(t, y, k):
+        return [y[1], -math.sin(y[0])]
+    for direction in (-1, 1):
+        over.direction = direction
+        for span in ((0, 30), (0, -30)):
+            mine = nevh.solve(lambda t, y, k: y[1]**2 / 2 - np.cos(y[0]), span, [2, 0],
+                              rtol=1e-12, events=over, args=(1,))
+            its = scipy_integrate.solve_ivp(pendulum, span, [2, 0], "DOP853", rtol=1e-12,
+                                            atol=1e-12, events=over, args=(1,))
+            assert len(mine.t_events[0]) == len(its.t_events[0]) > 2
+            assert np.allclose(mine.t_events[0], its.t_events[0], rtol=0, atol=1e-8)
+            assert mine.y_events[0].shape == its.y_events[0].shape
+
+
+def test_ensembles():
+    needs("NumPy")
+    starts = np.array([[0.5, 1, 2], [0, 0, 0.5]])
+    for H in (PENDULUM, nevh.Scene("pendulum")):
+        together = nevh.solve(H, (0, 5), starts, "verlet", dt=0.1)
+        assert together.y.shape == (2, 3, 51)
+        for k in range(3):
+            one = nevh.solve(H, (0, 5), starts[:, k], "verlet", dt=0.1)
+            assert np.array_equal(one.y, together.y[:, k])
+            assert one.energy_error == together.energy_error[k]
+    raised(nevh.Refused, "of one orbit", nevh.solve, PENDULUM, (0, 1), starts,
+           dense_output=True)
+
+
+def test_max_step():
+    short = nevh.solve(PENDULUM, (0, 10), [1, 0], max_step=0.01)
+    assert len(short.t) == 1001 and short.dt == 0.01
+    raised(nevh.Refused, "max_step", nevh.solve, PENDULUM, (0, 1), [1, 0], "verlet",
+           dt=0.1, max_step=0.01)
 
 
 def main(tests):
