@@ -76,7 +76,8 @@ class Graph:
 
     def apply(self, operation, *of):
         """The node of an operation, left out where it changes no value.  A product
-        with 0 is 0, so that zeros of a matrix join no variables."""
+        with 0 is 0, so that zeros of a matrix join no variables.  Signs, which round
+        nothing, are moved out of products and into sums."""
         simple = self._simple(operation, of)
         if simple is not None:
             return simple
@@ -96,6 +97,10 @@ class Graph:
             inner = self.nodes[of[0]]
             return inner[1] if operation == "neg" and inner[0] == "neg" else None
         a, b = (self.number(k) for k in of)
+        if operation in "+-*/^":
+            signed = self._signed(operation, of, b)
+            if signed is not None:
+                return signed
         if operation == "+":
             return of[1] if a == 0 else of[0] if b == 0 else None
         if operation == "-":
@@ -113,6 +118,33 @@ class Graph:
             return of[0]
         if operation == "^" and (b == 0 or b == 1):
             return of[0] if b else self.leaf("number", 1.0)
+        return None
+
+    def _negated(self, k):
+        """The node of which k is the negative, else None."""
+        node = self.nodes[k]
+        if node[0] == "number":
+            return self.leaf("number", -node[1]) if node[1] < 0 else None
+        return node[1] if node[0] == "neg" else None
+
+    def _signed(self, operation, of, exponent):
+        """The node of an operation one of whose arguments is negated, else None."""
+        if self.number(of[0]) is not None and self.number(of[1]) is not None:
+            return None
+        left, right = map(self._negated, of)
+        if operation in "*/" and (left is not None or right is not None):
+            both = left is not None and right is not None
+            found = self.apply(operation, of[0] if left is None else left,
+                               of[1] if right is None else right)
+            return found if both else self.apply("neg", found)
+        if operation in "+-" and right is not None:
+            return self.apply("-" if operation == "+" else "+", of[0], right)
+        if operation == "+" and left is not None:
+            return self.apply("-", of[1], left)
+        if operation == "^" and left is not None and exponent is not None and (
+                exponent % 1 == 0):
+            found = self.apply("^", left, of[1])
+            return self.apply("neg", found) if exponent % 2 else found
         return None
 
     def parameters(self, k):

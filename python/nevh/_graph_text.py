@@ -10,12 +10,13 @@ SPDX-License-Identifier: GPL-3.0-or-later
 import math
 import re
 
-from ._graph import STATE
+from ._graph import STATE, TIME
 
 _SUM, _PRODUCT, _POWER, _ATOM = range(4)
-_FEWEST = 4  # summands that are worth a sum over an index
+_FEWEST = 3  # summands that are worth a sum over an index
 _LARGEST = 300  # operations of such a summand
 _MOST = 100000  # summands
+_SHORT = 24  # characters of parameters that are no definition
 _LONGEST = 2000  # characters of a text before it becomes a definition
 _DEEPEST = 40  # parentheses
 _LINE = 60000  # characters of an effect
@@ -102,6 +103,7 @@ class _Writer:
     def __init__(self, graph, coordinates, taken):
         self.graph, self.coordinates = graph, coordinates
         self.texts, self.definitions, self.tables = {}, [], []
+        self.known_linear = {}
         self.prefix = next(name for name in ("d", "h", "def", "part", "shared_part")
                            if not any(re.fullmatch(name + r"\d+|%s" % name, other)
                                       for other in taken))
@@ -125,8 +127,8 @@ class _Writer:
     # Sums over an index.
 
     def summands(self, root):
-        """The summands of a node, or None where they are too many."""
-        found, ahead, nodes = [], [(root, 1.0, ())], self.graph.nodes
+        """The summands of a node, equal ones joined, or None where they are too many."""
+        found, ahead, nodes = {}, [(root, 1.0, ())], self.graph.nodes
         while ahead:
             k, factor, others = ahead.pop()
             node = nodes[k]
@@ -134,23 +136,66 @@ class _Writer:
             if kind in ("+", "-"):
                 ahead.append((node[2], factor if kind == "+" else -factor, others))
                 ahead.append((node[1], factor, others))
-            elif kind == "neg":
+                continue
+            if kind == "neg":
                 ahead.append((node[1], -factor, others))
-            elif kind in ("*", "/") and self._passes(node) is not None:
-                inner = self._passes(node)
+                continue
+            inner = self._passes(node) if kind in ("*", "/") else None
+            if inner is not None:
                 outer = node[2] if inner == node[1] else node[1]
                 x = self.graph.number(outer)
                 if x is None:
                     ahead.append((inner, factor, others + ((kind, outer),)))
-                elif kind == "*" or x != 0 and math.isfinite(1 / x):
+                    continue
+                if kind == "*" or x != 0 and math.isfinite(1 / x):
                     ahead.append((inner, factor * x if kind == "*" else factor / x,
                                   others))
-                else:
-                    found.append(_Summand(factor, others, k))
-            else:
-                found.append(_Summand(factor, others, k))
+                    continue
+            for core, own in self.monomials(node) or ((k, 1.0),):
+                known = found.setdefault((core, others), _Summand(0.0, others, core))
+                known.number += factor * own
             if len(found) + len(ahead) > _MOST:
                 return None
+        return [summand for summand in found.values() if summand.number]
+
+    def monomials(self, node):
+        """Of a row of a quadratic form, (a*x + b*y + ...)*x, its products and their
+        numbers, else None: each is a summand of two variables, or of one."""
+        if node[0] != "*":
+            return None
+        a, b = self.linear(node[1]), self.linear(node[2])
+        if not a or not b or min(len(a), len(b)) != 1:
+            return None
+        return [(self.graph.apply("*", min(i, j), max(i, j)), x * y)
+                for i, x in a.items() for j, y in b.items()]
+
+    def linear(self, root):
+        """{leaf: number} of a sum of variables times numbers, else None."""
+        if root in self.known_linear:
+            return self.known_linear[root]
+        found, ahead = {}, [(root, 1.0)]
+        while ahead and found is not None:
+            k, factor = ahead.pop()
+            node = self.graph.nodes[k]
+            kind = node[0]
+            if kind in ("q", "p"):
+                found[k] = found.get(k, 0.0) + factor
+            elif kind in ("+", "-"):
+                ahead += [(node[2], factor if kind == "+" else -factor),
+                          (node[1], factor)]
+            elif kind == "neg":
+                ahead.append((node[1], -factor))
+            elif kind == "*" and self.graph.number(node[1]) is not None:
+                ahead.append((node[2], factor * self.graph.number(node[1])))
+            elif kind in ("*", "/") and self.graph.number(node[2]) is not None:
+                x = self.graph.number(node[2])
+                ahead.append((node[1], factor * x if kind == "*" else factor / x
+                              if x else math.nan))
+            else:
+                found = None
+            if found is not None and len(ahead) + len(found) > _MOST:
+                found = None
+        self.known_linear[root] = found
         return found
 
     def _passes(self, node):
@@ -209,20 +254,20 @@ class _Writer:
         return name
 
     def over_index(self, summands, leaves):
-        """A sum over i of summands of one shape."""
+        """A sum over i of summands of one shape, as the number of these, the variables
+        that each reads, and a _Text of its body with a number before it."""
         texts = [self.values(column) for column in zip(*leaves)]
         ahead = iter(texts)
-        factors = [summand.number for summand in summands]
-        same = all(x == factors[0] for x in factors)
-        first = summands[0]
+        first, reads = summands[0], set()
 
         def body(k):
             node = self.graph.nodes[k]
             kind = node[0]
             if kind in "qp":
                 own = self.coordinates[node[1]][1]
-                return _Text(self.coordinate(kind, node[1],
-                                             None if own is None else next(ahead)))
+                name = self.coordinate(kind, node[1], None if own is None else next(ahead))
+                reads.add(name)
+                return _Text(name)
             if kind == "number":
                 return _Text(next(ahead))
             if kind in ("t", "parameter"):
@@ -231,42 +276,65 @@ class _Writer:
                 return _joined("^", body(node[1]), self.leaf(self.graph.nodes[node[2]]))
             return _applied(kind, [body(j) for j in node[1:]])
         # The order of `shape`: factors from the last, then the core.
-        others = [(kind, body(k)) for kind, k in reversed(first.factors)]
-        text = body(first.core)
-        for kind, other in others:
-            text = _joined(kind, text, other)
-        if not same:
-            text = _joined("*", _Text(self.values(factors)), text)
-        whole = _Text("sum(i = 1..%d, %s)" % (len(summands), text.text), _ATOM,
-                      text.depth + 1)
-        return self.times(factors[0] if same else 1.0, whole)
+        factors = [(kind, body(k)) for kind, k in reversed(first.factors)]
+        same = first.number if len({x.number for x in summands}) == 1 else None
+        core = body(first.core)
+        if same is None:
+            factors.append(("*", _Text(self.values([x.number for x in summands]))))
+        text = self.product(_Summand(1.0, None, None), core, factors[::-1])
+        return len(summands), reads, 1.0 if same is None else same, text
+
+    def joined_sums(self, sums):
+        """Sums over an index as texts, those that read the same variables joined."""
+        found = {}
+        for count, reads, factor, body in sums:
+            found.setdefault((count, frozenset(reads)), []).append((factor, body))
+        for (count, _), bodies in found.items():
+            factor = bodies[0][0] if len(bodies) == 1 else 1.0
+            inner = bodies[0][1] if len(bodies) == 1 else self.sum_of(
+                [self.times(*body) for body in bodies])
+            yield self.times(factor, _Text("sum(i = 1..%d, %s)" % (count, inner.text),
+                                           _ATOM, inner.depth + 1))
 
     @staticmethod
     def times(factor, text):
-        if factor == 1:
-            return text
-        if factor == -1:
-            return _applied("neg", [text])
-        if factor < 0:
-            return _applied("neg", [_joined("*", _Text(number(-factor)), text)])
-        return _joined("*", _Text(number(factor)), text)
+        if factor not in (1, -1):
+            text = text.within(_PRODUCT)
+            text = _Text(number(abs(factor)) + "*" + text.text, _PRODUCT, text.depth)
+        return text if factor > 0 else _applied("neg", [text])
 
     def alone(self, summand):
-        text = self.texts[summand.core]
-        for kind, k in summand.factors:
-            text = _joined(kind, text, self.texts[k])
-        return self.times(summand.number, text)
+        return self.product(summand, self.texts[summand.core],
+                            [(kind, self.texts[k]) for kind, k in summand.factors])
+
+    def product(self, summand, core, factors):
+        """A number times factors times what reads the state."""
+        text = None
+        for kind, factor in factors:
+            if kind == "*":
+                text = factor if text is None else _joined("*", text, factor)
+        if text is not None:
+            core = core.within(_PRODUCT)
+            text = text.within(_PRODUCT)
+            core = _Text(text.text + "*" + core.text, _PRODUCT, max(
+                text.depth, core.depth)) if not core.text.startswith("1/") else _Text(
+                    text.text + core.text[1:], _PRODUCT, max(text.depth, core.depth))
+        for kind, factor in factors:
+            if kind == "/":
+                core = _joined("/", core, factor)
+        return self.times(summand.number, core)
 
     def groups(self, root):
         """Of a sum, what is a sum over an index (a _Text), and what is not (a
-        _Summand)."""
-        summands = self.summands(root) if self.sums else None
+        _Summand); None where it is to be written as it stands."""
+        before = len(self.graph.nodes)
+        summands = self.summands(root)
         if summands is None or len(summands) < _FEWEST:
             return None
         alike, order = {}, []
         for summand in summands:
             shape, leaves = self.shape(summand)
-            if shape is None or not leaves:
+            if shape is None or not leaves or not self.sums:
                 order.append(([summand], None))
                 continue
             if shape not in alike:
@@ -274,32 +342,33 @@ class _Writer:
                 order.append(alike[shape])
             alike[shape][0].append(summand)
             alike[shape][1].append(leaves)
-        if not any(leaves and len(members) >= _FEWEST for members, leaves in order):
+        if len(self.graph.nodes) == before and not any(
+                leaves and len(members) >= _FEWEST for members, leaves in order):
             return None
-        found = []
-        for members, leaves in order:
-            if leaves and len(members) >= _FEWEST:
-                found.append(self.over_index(members, leaves))
-            else:
-                found.extend(members)
-        return found
+        sums = [self.over_index(*group) for group in order
+                if group[1] and len(group[0]) >= _FEWEST]
+        return list(self.joined_sums(sums)) + [
+            summand for members, leaves in order if not (
+                leaves and len(members) >= _FEWEST) for summand in members]
 
     # Other formulas.
 
     def write(self, roots, grouped):
         """Makes the texts of what roots are made of.  `grouped`: {node: groups}."""
-        uses, ahead, seen = {}, list(roots), set()
+        uses, order, ahead, seen = {}, [], [(k, False) for k in roots], set()
         for k in roots:
             uses[k] = uses.get(k, 0) + 1
-        while ahead:
-            k = ahead.pop()
-            if k in seen:
-                continue
-            seen.add(k)
-            for j in self.parts(k, grouped):
-                uses[j] = uses.get(j, 0) + 1
-                ahead.append(j)
-        for k in sorted(seen):
+        while ahead:  # what a text is made of is written before it
+            k, done = ahead.pop()
+            if done:
+                order.append(k)
+            elif k not in seen:
+                seen.add(k)
+                ahead.append((k, True))
+                for j in self.parts(k, grouped):
+                    uses[j] = uses.get(j, 0) + 1
+                    ahead.append((j, False))
+        for k in order:
             node = self.graph.nodes[k]
             if grouped.get(k):
                 text = self.sum_of(grouped[k])
@@ -308,15 +377,14 @@ class _Writer:
                 continue
             else:
                 text = _applied(node[0], [self.texts[j] for j in node[1:]])
-            if uses[k] > 1 and not self.is_leaf(node[-1], node) or len(text.text) > _LONGEST or text.depth > _DEEPEST:
+            short = re.fullmatch(r"-[\w\[\]]+", text.text) or (
+                not self.graph.reads[k] & (STATE | TIME) and len(text.text) < _SHORT)
+            if uses[k] > 1 and not short or len(text.text) > _LONGEST or (
+                    text.depth > _DEEPEST):
                 name = "%s%d" % (self.prefix, len(self.definitions) + 1)
                 self.definitions.append((name, text.text))
                 text = _Text(name)
             self.texts[k] = text
-
-    def is_leaf(self, k, node):
-        """Whether a node is minus a leaf k."""
-        return node[0] == "neg" and self.graph.nodes[k][0] in ("q", "p", "parameter")
 
     def parts(self, k, grouped):
         """The nodes whose texts the text of k is made of."""
@@ -356,14 +424,15 @@ class _Writer:
         if not parts:
             # The root itself may have become a definition.
             return [self.texts[root].text]
-        texts = [""]
+        chunks, length = [[]], 0
         for part in parts:
-            text = (part if isinstance(part, _Text) else self.alone(part)).text
-            if texts[-1] and len(texts[-1]) + len(text) > _LINE:
-                texts.append("")
-            texts[-1] += (" + " if texts[-1] else "") + (
-                "(%s)" % text if texts[-1] and text.startswith("-") else text)
-        return texts
+            text = part if isinstance(part, _Text) else self.alone(part)
+            if chunks[-1] and length + len(text.text) > _LINE:
+                chunks.append([])
+                length = 0
+            chunks[-1].append(text)
+            length += len(text.text) + 3
+        return [self.sum_of(chunk).text for chunk in chunks]
 
 
 def scene_text(graph, root, coordinates, start, parameters, title):

@@ -277,9 +277,7 @@ FUNCTIONS = {name: _of(name) for name in (
 FUNCTIONS.update(
     log=_log, pow=_of("^"), fabs=_of("abs"), fsum=total, prod=product,
     log2=lambda x: apply("log", x) / math.log(2),
-    # 2 exp(x/2) sinh(x/2) and 2 atanh(x/(2 + x)) keep the digits near 0.
-    expm1=lambda x: 2 * apply("exp", x / 2) * apply("sinh", x / 2),
-    log1p=lambda x: 2 * apply("atanh", x / (2 + x)),
+    expm1=lambda x: apply("exp", x) - 1, log1p=lambda x: apply("log", 1 + x),
     exp2=lambda x: apply("^", 2, x),
     ceil=lambda x: -apply("floor", -x),
     hypot=lambda *of: apply("hypot", *of) if len(of) == 2 else length(of),

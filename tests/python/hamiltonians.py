@@ -9,7 +9,7 @@ SPDX-License-Identifier: GPL-3.0-or-later
 
 import functools
 import math
-from math import cos, exp, sin, sqrt
+from math import cos, exp, sqrt
 
 try:
     import numpy as np
