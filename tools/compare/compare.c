@@ -10,7 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Where stderr is a terminal and the work takes longer than a second. */
+/* Shows progress on a terminal, for work of more than a second. */
 static void progress(const row_list *r, size_t i, double seconds, bool last) {
     if (seconds < 1 || !isatty(STDERR_FILENO))
         return;
@@ -53,7 +53,7 @@ static void run_rows(const plan *p, row_list *r, bool quiet) {
         progress(r, r->count, difftime(time(NULL), start), true);
 }
 
-/* Where the last of them will end: as far as a reference is of use. */
+/* The latest end of all rows, up to which a reference is needed. */
 static double last_end(const plan *p, const row_list *r) {
     double last = p->run->t_start + p->dt[0];
     if (!nevh_scene_stops(p->scene))
@@ -165,7 +165,7 @@ static void list_reasons(const row_list *r, list *words) {
     }
 }
 
-/* Whether a row came to grief, as all do where the solution ends. */
+/* True if a row failed or became unstable, as all do after the end of the solution. */
 static bool any_trouble(const row_list *r) {
     for (size_t i = 0; i < r->count; i++)
         if (r->row[i].failed ||

@@ -5,7 +5,7 @@
 
 enum { MOST_PANELS = 9 };
 
-/* Whether the row is the first of its group with numbers. */
+/* True if the row is the first of its group with numbers. */
 static bool begins(const row rows[], size_t i) {
     for (size_t k = i; k-- > 0 && rows[k].group == rows[i].group;)
         if (rows[k].ran)

@@ -15,8 +15,8 @@ bool verdict_is(const row *r, nevh_verdict verdict) {
     return r->ran && r->energy.verdict == verdict && !is_later(r);
 }
 
-/* Whether all rows of that integrator have the verdict, and this is the first
-   of them. */
+/* True if all rows of that integrator have the verdict, and this is the first of
+   them. */
 static bool always(const row rows[], size_t count, size_t i,
                    nevh_verdict verdict) {
     for (size_t k = 0; k < count; k++)
@@ -44,7 +44,7 @@ static bool same_place(const row *a, const row *b) {
            a->tolerance == b->tolerance && (a->tolerance > 0 || a->dt == b->dt);
 }
 
-/* Whether gradients make different verdicts there. */
+/* True if the verdict depends on the gradient for that integrator and step. */
 static bool differs(const row rows[], size_t count, const row *r) {
     for (size_t k = 0; k < count; k++)
         if (same_place(&rows[k], r) && !verdict_is(&rows[k], r->energy.verdict))
@@ -91,7 +91,7 @@ char *verdict_unit(const plan *p, const char *before) {
     return text_print("%s%s", *unit ? before : "", unit);
 }
 
-/* What the row was asked for: a step, or a tolerance. */
+/* The step or the tolerance of a row, in words. */
 static char *step_of(const plan *p, const row *r) {
     char *unit = verdict_unit(p, " ");
     char *text = r->tolerance > 0 ? text_print("tolerance = %.4g", r->tolerance)
@@ -141,7 +141,7 @@ static void tell_crossing(const plan *p, const row *r, const row *b,
     free(unit);
 }
 
-/* Whether the line is most of the error; else the loss was made at once. */
+/* True if the line accounts for most of the error; else the loss was made at once. */
 static bool has_line(const nevh_energy_report *e) {
     static const double some = 0.5; /* R^2 */
     return fabs(e->drift) > 4 * e->drift_error && e->straightness > some &&
@@ -232,7 +232,7 @@ static void tell_large(const plan *p, const row rows[], size_t count,
     }
 }
 
-/* How far the errors of all bounded rows were seen to be level. */
+/* The time until which the errors of all bounded rows were level. */
 static double level_until(const plan *p, const row rows[], size_t count) {
     double least = INFINITY, start = p->run->t_start;
     for (size_t i = 0; i < count; i++) {
@@ -268,7 +268,7 @@ static void tell_bounded(const plan *p, const row rows[], size_t count,
     free(many);
 }
 
-/* Of an integrator with several verdicts, where it has that one. */
+/* Names, for an integrator with several verdicts, the steps that have that one. */
 static void tell_some(const row rows[], size_t count, const char *integrator,
                       nevh_verdict verdict, list *words) {
     static const char *const text[] = {
@@ -316,7 +316,7 @@ static const row *longer(const row rows[], const row *r) {
     return NULL;
 }
 
-/* Whether the same was said of a gradient before. */
+/* True if an earlier row, with another gradient, stands for this one. */
 static bool is_told(const row rows[], const row *r) {
     for (const row *k = rows; k < r; k++)
         if (same_place(k, r))

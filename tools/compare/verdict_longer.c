@@ -15,7 +15,7 @@ char *verdict_until(const plan *p, const row *r) {
     return text;
 }
 
-/* Of a calm run, what it comes to when it is continued. */
+/* The outcome of a calm run when it is continued. */
 void verdict_tell_later(const plan *p, const row rows[], size_t count,
                         const row *r, list *words) {
     char *subject = verdict_subject(p, rows, count, r);

@@ -16,13 +16,13 @@ char *verdict_unit(const plan *, const char *before);
 /* verdict_longer.c: what runs that are continued say of rows. */
 /* The end of the run that a row's verdict is from. */
 char *verdict_until(const plan *, const row *);
-/* Of a calm run, what it comes to when it is continued. */
+/* The outcome of a calm run when it is continued. */
 void verdict_tell_later(const plan *, const row rows[], size_t count,
                         const row *, list *words);
 /* A row that even a longer run leaves open. */
 void verdict_tell_open(const plan *, const row rows[], size_t count,
                        const row *, list *words);
-/* Whether the longer run meets far larger energies. */
+/* True if the longer run meets far larger energies. */
 bool verdict_leaves(const row *);
 /* Level errors of a run that are larger when it is continued. */
 void verdict_tell_larger(const plan *, const row rows[], size_t count,

@@ -12,7 +12,7 @@
    machine. */
 static const double most_work = 0.2, most_follow = 0.02;
 
-/* What a row ends in: a nevh_verdict, or one of these. */
+/* The result of a row: a nevh_verdict, or one of these. */
 enum {
     HARD_STOPPED = NEVH_UNDECIDED + 1,
     HARD_REFUSED,
@@ -133,7 +133,7 @@ static void add_rows(suite *all, const plan *p, const hard_case *c,
     all->cases++;
 }
 
-/* What nevh compare would be given. */
+/* The options that nevh compare would be given. */
 static options options_of(const options *o, const hard_case *c) {
     options own = *o;
     list settings = {0};

@@ -7,10 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where no end is asked for, a run goes on until it is clear what the orbit is,
-   up to so many steps, or to the scene's own end. */
+/* Limits of a run without --end: it goes on until the orbit is classified, up to so
+   many steps, or to the scene's own end. */
 static const double most_steps = 4e5, good_enough = 0.05;
-/* Of the energy's scale: an orbit that changes its energy by more is not one of H. */
+/* Relative to the energy's scale: an orbit whose energy changes by more is not one
+   of H. */
 static const double lost = 0.1;
 
 typedef struct {
@@ -30,7 +31,7 @@ typedef struct {
     nevh_chaos_confirmation confirmed;
 } row;
 
-/* What was found at a time. */
+/* The state of the estimates at one time. */
 typedef struct {
     nevh_chaos_report now;
     double *value, *error; /* of each exponent */
@@ -98,7 +99,7 @@ static bool is_clear(const row *r, int *times) {
     return verdict == NEVH_REGULAR || *times > 1;
 }
 
-/* Whether a run twice as long has room in the budget. */
+/* True if a run twice as long fits the budget. */
 static bool may_double(const job *j) {
     double budget = j->options->search.budget;
     return budget == 0 || 2 * (cpu_seconds() - j->started) < budget;
@@ -115,7 +116,7 @@ static int run_until_clear(const job *j, const row *r) {
     return status;
 }
 
-/* What finer steps say; of a run that failed, nothing. */
+/* Confirms the verdict with finer steps; a run that failed has none. */
 static void confirm(row *r, int status) {
     r->confirmed.verdict = nevh_chaos_result(r->chaos).verdict;
     if (!status && nevh_chaos_confirm(r->chaos, 0, &r->confirmed))
@@ -227,7 +228,8 @@ static void say_row(job *j, const row *r) {
     free(what);
 }
 
-/* What is found is of the scheme's own map, whose orbits may keep no energy. */
+/* Notes a change of the energy: the exponents are those of the scheme's own map,
+   whose orbits may keep no energy. */
 static void note_energy(job *j, const row *r) {
     const plan *p = j->plan;
     nevh_options o = plan_options(p, p->gradients.item[0]);

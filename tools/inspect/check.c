@@ -141,7 +141,7 @@ static void add_trial_run(const plan *p, const nevh_integrator *scheme,
     free(text);
 }
 
-/* What the table holds, and what is said below it. */
+/* The table and the words below it. */
 typedef struct {
     const plan *plan;
     const trial_run *ahead;

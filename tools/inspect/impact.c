@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Whether schemes fit: of all, and once more with a transform. */
+/* The integrators of a list, and a flag each: it fits the system. */
 typedef struct {
     size_t count;
     char **name;

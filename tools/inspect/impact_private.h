@@ -21,7 +21,7 @@ typedef struct {
     double at_end, largest, since; /* of the range; at_end, since: or NAN */
 } difference;
 
-/* Of one orbit with the first dt and gradient; to be freed. */
+/* Runs one orbit with the first dt and gradient; to be freed. */
 trace trace_run(const plan *, const char *integrator);
 /* With so many states that a curve looks like one, and without times. */
 trace trace_dense(const plan *, const char *integrator);

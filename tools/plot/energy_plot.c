@@ -7,7 +7,7 @@
 static const double absurd = 100; /* of an error relative to the energy */
 enum { MOST_POINTS = 300 };       /* of a line */
 
-/* Whether a point stands for several steps. */
+/* True if a point stands for several steps. */
 static bool has_bins(const plan *p) {
     double shortest = INFINITY;
     for (size_t i = 0; i < p->dts; i++)

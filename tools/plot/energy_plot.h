@@ -9,7 +9,7 @@
 /* A plot, or one more panel. */
 plot *energy_plot_new(const plan *, const char *title, const char *heading);
 void energy_plot_panel(plot *, const plan *, const char *heading);
-/* What they are relative to, and what a point stands for; to be freed. */
+/* The scale of the errors, and the steps per point, in words; to be freed. */
 char *energy_plot_words(const plan *);
 /* A line in the current panel; name: NULL is none. */
 void energy_plot_add(plot *, const char *name, const envelope *);

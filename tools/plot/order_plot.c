@@ -7,7 +7,7 @@
 
 static const double useless = 1, rounding = 1e-13; /* as errors */
 
-/* What is drawn, a panel each. */
+/* Selects the error of a panel. */
 typedef double error_of(const row *);
 static double energy_error(const row *r) {
     return r->energy.max;

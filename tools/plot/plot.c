@@ -122,8 +122,8 @@ void plot_same_ranges(plot *p) {
     p->same_ranges = true;
 }
 
-/* Of a namesake; else the first that is free: in the panel for those without
-   a name, in the plot for the others. */
+/* Finds the look of a series of the same name; else the first free one: in the
+   panel for those without a name, in the plot for the others. */
 static size_t find_look(const plot *p, const char *name) {
     size_t look = 0;
     for (size_t i = 0; i < p->count; i++) {

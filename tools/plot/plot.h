@@ -39,10 +39,10 @@ void plot_free(plot *); /* NULL is allowed */
 void plot_note(plot *, const char *text);
 /* Adds a panel and makes it the current one. */
 void plot_panel(plot *, const char *heading, const char *x, const char *y);
-/* Of the first panel. */
+/* The heading of the first panel. */
 void plot_heading(plot *, const char *text);
 
-/* Of the current panel. */
+/* Settings of the current panel. */
 void plot_log(plot *, bool x, bool y);
 void plot_equal(plot *);                           /* as long on x as on y */
 void plot_span_x(plot *, double low, double high); /* exactly this */
@@ -55,7 +55,7 @@ void plot_same_ranges(plot *);
    they read in grey; hatched where they are NAN.  All are copied. */
 void plot_map(plot *, size_t columns, const double x[], size_t rows,
               const double y[], const double z[], const char *label);
-/* Of looks, in turn. */
+/* The colours of looks, in turn. */
 enum { PLOT_COLOURS = 7 };
 extern const char *const plot_colours[PLOT_COLOURS];
 /* Looks differ in colour alone, of which there are as many as looks. */
@@ -103,19 +103,19 @@ void section_plot(plot **, const plan *, const nevh_scene_section *,
                   const char *heading);
 
 bool plot_wanted(const options *); /* --plot or --keep-plot-script */
-/* That plot_write will work as far as can be told: known ending, files that can
-   be written, gnuplot at hand where the picture is not SVG.  To be called before the long work, and before
-   any output is opened.
+/* Checks what plot_write needs: a known ending, files that can be written, gnuplot
+   unless the picture is SVG.  To be called before the long work, and before any
+   output is opened.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int plot_check(const options *);
-/* Of commands that print rows: whether there is a picture instead, and no file
-   or format was asked for. */
+/* For commands that print rows: true if a picture replaces them, and no file or
+   format was asked for. */
 bool plot_replaces_rows(const options *);
 /* Then, what was drawn, where that is in a file; points: 0 is not said. */
 void plot_say_written(const options *, const plan *, const char *integrator,
                       size_t points);
-/* Whether it goes to a file, which is to be written before anything is printed:
-   who reads that may stop reading. */
+/* True if the picture goes to a file, which is to be written before the rows are
+   printed: a reader that stops early ends the program. */
 bool plot_goes_first(const options *);
 /* Draws to --plot and keeps the script as --keep-plot-script says.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */

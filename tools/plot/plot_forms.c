@@ -21,7 +21,7 @@ enum {
     MARKS = 9 /* of a PLOT_MARKED line */
 };
 
-/* What a form has; 0: nothing, or what is usual. */
+/* The attributes of a form; 0: none, or the default. */
 static const struct {
     const char *colour; /* NULL: that of the look */
     double width;

@@ -102,7 +102,8 @@ int gnuplot_check(void) {
     return status;
 }
 
-/* What a drawing ends with; gnuplot says nothing where the disk is full. */
+/* The last bytes of a complete drawing; gnuplot reports no error when the disk is
+   full. */
 static const struct {
     const char *bytes;
     size_t count;
@@ -112,7 +113,8 @@ static const struct {
     [PLOT_TEXT] = {"", 0},     [PLOT_SCREEN] = {"", 0},
 };
 
-/* Of what is no file that can be read again it is not known. */
+/* True for a file that ends as its medium does, and for all that is no regular
+   file. */
 static bool is_whole(FILE *f, medium m) {
     enum { TAIL = 16 };
     struct stat found;

@@ -18,7 +18,7 @@ static bool is_crossed_by(const guide_name *one, pair a, pair b) {
                      (pair){one->right, one->middle + half});
 }
 
-/* By a curve of the panel, or another guide. */
+/* True if a curve of the panel, or another guide, crosses the name. */
 static bool is_crossed(const plot *p, const series *guide,
                        const plot_screen *on, const guide_name *one) {
     for (size_t i = 0; i < p->count; i++) {

@@ -6,7 +6,7 @@
 const unsigned plot_palette[PLOT_PALETTE] = {0x00204D, 0x31446B, 0x666970,
                                              0x958F78, 0xCBBA69, 0xFFEA46};
 
-/* Whether values are equal steps apart, as pixels are. */
+/* True if values are equally spaced, as pixels are. */
 static bool is_even(size_t count, const double x[]) {
     static const double rounding = 1e-6;
     double length = (x[count - 1] - x[0]) / (double)(count - 1);

@@ -132,13 +132,13 @@ typedef struct {
     bool narrow;        /* the legend is below, labels of y axes above */
     double legend_height;
 } layout;
-/* What the axes of a panel show. */
+/* The axes of a panel. */
 typedef struct {
     axis x, y;
 } axes;
 axes plot_axes(const plot *, size_t panel, const layout *, bool text);
 layout plot_lay_out(const plot *, const target *);
-/* Whether the series is the one of its name that the legend shows. */
+/* True if the legend shows this series for its name. */
 bool plot_in_legend(const plot *, size_t series);
 /* Bytes of the letter, as UTF-8 has them; 0 where it is none. */
 size_t plot_letter_bytes(const unsigned char *);
@@ -173,15 +173,15 @@ typedef enum {
     THIN_SOLID, /* also: no part that lies over another of the series */
     THIN_DOTS   /* none that lies over another */
 } plot_thinning;
-/* How far, in pixels, a point of what is left out, within the panel, is at most
-   from what is drawn. */
+/* The largest distance, in pixels, from a point left out, within the panel, to the
+   line that is drawn. */
 double plot_thin_error(plot_thinning, double detail);
 /* to  has room for twice as many; points of `from`, and breaks
    returns  how many they are */
 size_t plot_thin(const plot_screen *, plot_thinning, const pair from[],
                  size_t count, pair to[]);
 pair plot_in_pixels(const plot_screen *, pair);
-/* Whether a part of the line from a to b is in a rectangle; they become that part. */
+/* Clips the line from a to b to a rectangle; false if it is outside. */
 bool plot_clip(pair *a, pair *b, pair low, pair high);
 plot_screen plot_screen_of(const plot *, size_t panel, const layout *);
 

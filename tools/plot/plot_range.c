@@ -19,7 +19,8 @@ static void widen(range *r, double value) {
     r->high = fmax(r->high, value);
 }
 
-/* Of the points of a panel that it shows, or of all; empty where there are none. */
+/* The range of the points of a panel that it shows, or of all; empty if there are
+   none. */
 static range extent(const plot *p, size_t number, coordinate *of) {
     range r = {INFINITY, -INFINITY}, seen = p->panel[number].span_x;
     if (!(seen.low < seen.high))
@@ -53,8 +54,8 @@ static double round_above(double value) {
     return digits[i] * power;
 }
 
-/* Of a logarithmic axis: round numbers, or, where they would be far from a range
-   that is narrow, what is as far on either side, and no less than a quarter. */
+/* Finds the range of a logarithmic axis: round numbers, or, if they would be far
+   from a narrow range, an equal margin on either side, of a quarter at least. */
 static range decades(range r) {
     if (r.low > r.high)
         return (range){0.1, 10};

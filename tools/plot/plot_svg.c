@@ -8,7 +8,7 @@
 static const double middle_line = 0.325; /* of a letter: from its base */
 static const double base = 4.55;         /* the same, of usual letters */
 
-/* What is no letter, or none of XML, is a question mark. */
+/* Replaces by a question mark all that is not valid UTF-8, or not allowed in XML. */
 static void put_letters(FILE *f, const char *text, size_t bytes) {
     for (const char *end = text + bytes; text < end;) {
         size_t length = plot_letter_bytes((const unsigned char *)text);
@@ -20,7 +20,7 @@ static void put_letters(FILE *f, const char *text, size_t bytes) {
     }
 }
 
-/* Of "10^{-3}" the power is raised. */
+/* Raises the power of "10^{-3}". */
 static void put_number(FILE *f, const char *text) {
     const char *power = strstr(text, "^{");
     if (!power) {
@@ -91,7 +91,7 @@ static double share_of(const axis *a, double at) {
                   : (at - r.low) / (r.high - r.low);
 }
 
-/* Where an axis begins, where it goes to, and what stands beside its ticks. */
+/* The geometry of an axis: its start, its direction, and the side of its ticks. */
 typedef struct {
     pair from, along; /* pixels */
     pair out;         /* direction of the ticks */

@@ -93,10 +93,9 @@ static void put_line(FILE *f, const plot_look *l, const plot_screen *s, pair at,
     fputs("'/>\n", f);
 }
 
-/* What is on one side of a line, of a closed polygon. [I. E. Sutherland,
-   G. W. Hodgman, Reentrant polygon clipping, Communications of the ACM 17 (1974)
-   32-42]
-   to  has room for twice as many */
+/* Clips a closed polygon to one side of a line. [I. E. Sutherland, G. W. Hodgman,
+   Reentrant polygon clipping, Communications of the ACM 17 (1974) 32-42]
+   to  of a capacity of twice as many */
 static size_t cut_polygon(const pair from[], size_t count, bool of_y,
                           double limit, double side, pair to[]) {
     size_t kept = 0;
@@ -242,7 +241,7 @@ static void put_all_marks(FILE *f, const plot_look *l, const pair point[],
         put_marks(f, l->edge, l->mark - 1, l->size, point, count);
 }
 
-/* Of every so many points, those in the panel. */
+/* Marks one point of every l->every, if it is in the panel. */
 static void mark_points(FILE *f, const plot_look *l, const plot_screen *s,
                         pair at, const pair point[], size_t count) {
     pair *marks = tool_allocate(count, sizeof *marks);

@@ -31,7 +31,7 @@ static sleeve sleeve_at(pair from, double tolerance) {
     return (sleeve){from, {0, 0}, -INFINITY, INFINITY, 0, tolerance};
 }
 
-/* Whether a line to that point is near enough to all points before it.  None of
+/* True if a line to that point is near enough to all points before it. None of
    these is farther away, so that none is beyond its end. */
 static bool sleeve_reaches(sleeve *v, pair to) {
     pair d = {to.x - v->from.x, to.y - v->from.y};
@@ -53,7 +53,7 @@ static bool sleeve_reaches(sleeve *v, pair to) {
     return true;
 }
 
-/* Of a line without breaks. */
+/* Thins a line without breaks. */
 static size_t thin_line(const plot_screen *s, const pair from[], size_t count,
                         pair to[]) {
     size_t kept = 0, last = 0; /* that was kept */
@@ -103,7 +103,8 @@ static bool *cell_of(const cells *c, pair at) {
                      (size_t)(at.x / c->side)];
 }
 
-/* Whether the line from a to b has a cell of its own; draws it. */
+/* True if the line from a to b enters a cell that was empty; draws: marks its
+   cells. */
 static bool walk_line(const cells *c, pair a, pair b, bool draws) {
     double length = hypot(b.x - a.x, b.y - a.y);
     size_t count = (size_t)ceil(length / c->side);
@@ -203,8 +204,8 @@ size_t plot_thin(const plot_screen *s, plot_thinning how, const pair from[],
                             : thin_lines(s, how == THIN_SOLID, from, count, to);
 }
 
-/* Whether a part of the line from a to b is on that side of a limit, as far as
-   from and to, which shrink: shares of the line. */
+/* Clips the line to one side of a limit: from and to, in units of its length,
+   shrink. False if nothing remains. */
 static bool clip(double along, double room, double *from, double *to) {
     if (along > 0)
         *to = fmin(*to, room / along);

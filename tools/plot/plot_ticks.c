@@ -36,8 +36,8 @@ static int digits_of(double step) {
     return (int)fmax(ceil(-log10(step) - rounding), 0);
 }
 
-/* What the numbers have in common, where they would be too long otherwise: a
-   round one near the middle. */
+/* The offset common to numbers that would be too long otherwise: a round one near
+   the middle. */
 static double common_part(range r, double step) {
     static const double long_numbers = 1e5; /* steps */
     double largest = fmax(fabs(r.low), fabs(r.high));

@@ -10,7 +10,7 @@ static bool is_plain(const char *unit) {
     return *unit && !strpbrk(unit, " /*^()");
 }
 
-/* What makes p dq/dt an energy, an angle being a number. */
+/* The unit that makes p dq/dt an energy; an angle counts as a number. */
 static char *momentum_unit(const plan *p, const char *coordinate) {
     const char *energy = nevh_scene_label(p->scene, "energy");
     const char *time = nevh_scene_label(p->scene, "t");

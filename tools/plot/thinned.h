@@ -19,7 +19,7 @@ typedef struct {
 
 thinned thinned_new(size_t columns);
 void thinned_free(thinned *);
-/* Where the next row is to be written; NULL where it is not wanted. */
+/* The place of the next row; NULL: the row is not needed. */
 double *thinned_next(thinned *);
 
 #endif

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the energy: what is seen; where rk4 is no longer on an orbit; what the other
-   keeps. */
+/* Changes of the energy: `seen` is visible; above `lost` rk4 has left the orbit;
+   below `kept` the other scheme keeps it. */
 static const double seen = 0.15, lost = 1, kept = 0.1;
 enum { MOST_FRAMES = 400, FEWEST_FRAMES = 60, BYTES_A_NUMBER = 5 };
 
@@ -102,8 +102,8 @@ static double worst(const reel *r) {
     return most;
 }
 
-/* Whether both run to the end, where rk4 has lost or gained what the other has
-   not. */
+/* True if both run to the end, and rk4 has lost or gained energy that the other
+   keeps. */
 static bool is_telling(const film *f) {
     const reel *other = &f->reel[0], *rk4 = &f->reel[1];
     if (other->frames <= f->most || rk4->frames <= f->most)

@@ -57,7 +57,7 @@ static const char script[] =
     "if(still.addEventListener)still.addEventListener('change',mind);\n"
     "mind();box.hidden=false})();\n";
 
-/* Where what is seen is, in the units of a panel. */
+/* The map from coordinates to a panel. */
 typedef struct {
     double x, y, scale; /* of its upper left corner */
     int height;

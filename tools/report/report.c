@@ -241,7 +241,7 @@ static void free_part(report_part *part) {
     free(part->messages);
 }
 
-/* Whether a row of the comparison has numbers, and so a verdict. */
+/* True if a row of the comparison has a verdict, and so numbers. */
 static bool has_verdict(const report_part *part) {
     for (int v = 0; part->html && v <= NEVH_UNDECIDED; v++) {
         char *cell = text_print("<td>%s</td>", nevh_verdict_name(v));
@@ -321,7 +321,7 @@ static void remove_folder(const report_work *w) {
     rmdir(w->folder);
 }
 
-/* What a part has said, where it ends the program. */
+/* Copies the messages of a part to the terminal when it ends the program. */
 static void tell(const report_work *w) {
     char text[512];
     int file = w->terminal < 0 ? -1 : open(w->messages, O_RDONLY);
@@ -379,7 +379,7 @@ static int write_page(const options *o, const char *text) {
     return output_close(&out, TOOL_OK);
 }
 
-/* What tabs and bookmarks say: the scenes. */
+/* The title, for tabs and bookmarks: the scenes. */
 static void begin_page(const options *o, FILE *f) {
     char *title = text_print("%s", "nevh report");
     for (size_t i = 1; i < o->operands.count; i++) {

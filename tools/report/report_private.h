@@ -5,8 +5,8 @@
 
 #include "experiment/plan.h"
 
-/* What one command made: its page as HTML, its picture, and its messages.  Each
-   is NULL where there is none. */
+/* The output of one command: its page as HTML, its picture, and its messages. Each
+   is NULL if there is none. */
 typedef struct {
     const char *title, *about; /* about: how to read it */
     const char *variant;       /* NULL: there is one */
@@ -38,7 +38,7 @@ char *text_read(const char *name);
 /* report_html.c */
 /* wide: things stand side by side */
 void html_head(FILE *, const char *title, bool wide);
-/* Of as many as `count`, where they are several. */
+/* Begins or ends a group of `count` parts side by side; nothing for one. */
 void html_side_by_side(FILE *, size_t count, bool begins);
 /* number  of its picture in the page
    told    notes that parts before it have, and then its own */
