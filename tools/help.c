@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What an exit status says. */
+/* The meaning of each exit status. */
 static const struct {
     int status;
     const char *when;
@@ -62,7 +62,7 @@ static void print_all(FILE *f) {
     free(text);
 }
 
-/* What nevh prints where no command is given. */
+/* Prints the help of nevh without a command. */
 void help_brief(FILE *f) {
     fputs("Usage: nevh COMMAND SCENE [OPTION]...\n\n", f);
     for (size_t i = 0; commands[i]; i++)
@@ -169,7 +169,7 @@ static void print_option_json(const option_row *row) {
     fputs("}", stdout);
 }
 
-/* Of one command with its options, or of all. */
+/* Prints one command with its options, or all. */
 static int print_json(const command *c) {
     for (size_t i = 0; commands[i]; i++)
         if (command_takes_known(commands[i]))

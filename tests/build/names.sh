@@ -85,7 +85,8 @@ fi
 # Comments that begin with another word, in the folders that have none.
 plain='include integrators models lib/diagnose lib/ensemble lib/expression
     lib/gradient lib/implicit lib/run lib/scene lib/system lib/taylor lib/work
-    tools/compare tools/hard tools/inspect tools/plot tools/report'
+    tools/compare tools/experiment tools/hard tools/inspect tools/orbit
+    tools/plot tools/report tools/search tools/commands.c tools/help.c tools/nevh.c'
 inverted() {
     awk -v words='(Of|What|Whether|Where|Those|That|How|By|Who|Whose|Whoever)' \
         '{ gsub(/"[^"]*"/, "") }

@@ -56,8 +56,8 @@ static double *changes(const plan *p, double t_end, double tolerance) {
     return change;
 }
 
-/* How large they are at states beside the start; out, `count`.  A change that is
-   far below that is rounding. */
+/* Measures the size of invariants at states near the start; out, `count`. A change
+   far below it is rounding. */
 static bool measure(const plan *p, size_t count, double size[]) {
     nevh_options o = plan_options(p, p->gradients.item[0]);
     nevh_probe *probe = nevh_probe_new(p->system, &o);

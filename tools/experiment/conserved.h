@@ -5,8 +5,8 @@
 
 #include "plan.h"
 
-/* Those of the scene that are not, on the orbit of a high order at two tolerances,
-   over at most 2000 dt. */
+/* Names the scene's [invariants] that are not conserved on the orbit of a high
+   order at two tolerances, over at most 2000 dt. */
 void conserved_words(const plan *, list *notes);
 /* Likewise, but without a word where that is not known. */
 void conserved_warn(const plan *, list *notes);

@@ -59,7 +59,7 @@ static void set_scale(const plan *p, double part, double scale[]) {
             part * (p->reference ? nevh_reference_range(p->reference, k) : 1);
 }
 
-/* Of the first steps.  The derivative of the first one is taken over a small
+/* Diagnoses the first steps. The derivative of the first one is taken over a small
    part of the ranges: orbits may begin where H varies most. */
 void diagnose_row(const plan *p, row *r) {
     double t = p->run->t_start, *scale = tool_allocate(2 * p->n, sizeof *scale);

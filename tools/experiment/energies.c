@@ -39,8 +39,8 @@ static void find_bodies(const plan *p, energies *s) {
         s->bodies = 0;
 }
 
-/* What [picture] calls a bob at one of its coordinates, or the first of them.
- */
+/* The name in [picture] of a body at one of its coordinates, or of the first of
+   them. */
 static char *name_of_body(const plan *p, const energies *s, size_t body) {
     const char *first = NULL;
     for (size_t k = 0; k < p->n; k++) {
@@ -57,7 +57,7 @@ static char *name_of_body(const plan *p, const energies *s, size_t body) {
     return text_print("%s", first);
 }
 
-/* Those that have terms, which friction has not; one alone is the energy. */
+/* Finds the effects with terms, which friction has not; one alone is the energy. */
 static void find_effects(const plan *p, energies *s) {
     s->all = nevh_system_effect_count(p->system);
     s->every = tool_allocate(s->all, sizeof *s->every);

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of an implicit scheme the work of a step depends on its length, which is
-   found by pilots of so many steps. */
+/* The work of an implicit step depends on its length, which is found by pilots of
+   so many steps. */
 enum { PILOT_STEPS = 64, BISECTIONS = 5 };
 static const double longer = 1.5;
 static const double hopeless = 1.3; /* a price above the least met */
@@ -73,7 +73,7 @@ static double piloted(const plan *p, const row *r, double each) {
     return cheapest;
 }
 
-/* Whether its work is gradients at all. */
+/* True if its work is counted in gradients. */
 static bool takes_gradients(const row *r) {
     return nevh_integrator_gradients(r->scheme) > 0 ||
            nevh_integrator_sweep_gradients(r->scheme) > 0;

@@ -23,7 +23,7 @@ static double value_at(const plan *p, double t, const double state[]) {
                : value;
 }
 
-/* What the reference's own error may do to it, variable by variable. */
+/* The effect of the reference's own error on the observable, variable by variable. */
 static double own_error(const plan *p, double t, double state[]) {
     double value = value_at(p, t, state), sum = 0;
     double part = nevh_reference_error(p->reference);

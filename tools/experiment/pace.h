@@ -17,13 +17,13 @@ typedef struct {
 /* A nevh_observe_fn; data is the pace. */
 int pace_observe(void *, size_t step, double t, const double q[],
                  const double p[]);
-/* That of a run up to its end, its failure, or an energy error above `scale`
-   (0: that of the energy); with the options of the run, whose q and p are its
-   start.  Its rates are gone. */
+/* The pace of a run up to its end, its failure, or an energy error above `scale`
+   (0: the scale of the energy); with the options of the run, whose q and p are its
+   start. Its rates are freed. */
 pace stability_pace(const nevh_system *, const nevh_integrator *,
                     const nevh_options *, double scale, double dt,
                     double t_end);
-/* Whether h w = x is beyond what a scheme of that limit bears. */
+/* True if h w = x is beyond that limit of stability of the scheme. */
 bool stability_exceeded(const nevh_integrator *, double limit, double x);
 /* The likely cause of trouble at that pace; NULL where none is known. */
 char *stability_cause(const nevh_integrator *, double limit, double dt,
@@ -66,7 +66,7 @@ typedef struct {
    cost     1e8 evaluations of terms, and two times nevh_chaos_find */
 trial_run trial_run_new(const plan *, bool chaos);
 void trial_run_words(const plan *, const trial_run *, list *notes);
-/* Of a scheme, its limit of stability given, at steps of dt; NULL: nothing. */
+/* The verdict for a scheme with that limit of stability at steps of dt; NULL: none. */
 const char *trial_run_verdict(const trial_run *, double limit, double dt);
 
 #endif

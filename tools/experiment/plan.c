@@ -194,7 +194,7 @@ static int take_times(plan *p, const options *o) {
     return o->t_end ? scene_number(p->scene, o, o->t_end, &p->t_end) : TOOL_OK;
 }
 
-/* Of a setting, for the title. */
+/* The words of a setting in the title. */
 static char *change_of(const char *setting) {
     enum { MOST = 32 };
     const char *text = setting + 1;
@@ -369,7 +369,7 @@ double plan_period(const plan *p, const char *shown) {
     return 0;
 }
 
-/* That of one observation, which may tell nothing. */
+/* The energy scale after one observation, which may leave it unknown. */
 static double scale_of_start(const plan *p, bool *known) {
     const nevh_options as = {.portable = p->portable};
     nevh_energy *e = nevh_energy_new(p->system, &as);

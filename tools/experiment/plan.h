@@ -70,9 +70,9 @@ nevh_stepper *plan_stepper(const plan *, const char *name);
    for the first gradient; NULL, with a message, when none does.
    name  out: what the plan calls it; NULL: not asked for */
 nevh_stepper *plan_first(const plan *, const char **name);
-/* Whether one fits, as plan_first finds it: for those that take no step. */
+/* True if one fits, as plan_first finds it: for commands that take no step. */
 bool plan_fits(const plan *, const char **name);
-/* Of plans with several integrators or dt: which of them is taken. */
+/* Notes, for plans with several integrators or dt, which one is used. */
 void plan_note_first(const plan *, const char *integrator, list *notes);
 /* Title, effects, structure of H, span. */
 void plan_notes(const plan *, list *notes);
@@ -94,15 +94,14 @@ int plan_refuse_end(const plan *);
 char *plan_why(const plan *, const char *message);
 /* Likewise of a member of the ensemble, where it starts elsewhere alone. */
 char *member_why(const plan *, uint64_t member, const char *message);
-/* What is wrong with a run that ended well, but whose energy changes by a good
-   part, or that passes a pole: that, or that the solution ends; to be freed, NULL:
-   nothing.
-   watch   what observed that run */
+/* The fault of a run that ended well, but whose energy changes by a good part, or
+   that passes a pole: that, or that the solution ends; to be freed, NULL: none.
+   watch   the energy observed in that run */
 char *plan_doubts(const plan *, const nevh_energy *watch, int status);
 nevh_energy *plan_watch(const plan *);
 /* The same of a run that nothing observed: the run again. */
 char *plan_doubts_again(const plan *, const char *integrator, double dt);
-/* Where H jumps. */
+/* Notes the times at which H jumps. */
 void time_notes(const plan *, list *notes);
 
 /* stepper_cache.c */
@@ -131,7 +130,7 @@ int plan_run(const plan *, nevh_stepper *, double dt, double q[], double m[],
              const nevh_observer[], size_t count, double *stopped);
 char *stop_words(const plan *, double t);
 
-/* Of what is shown: that of the coordinate that it is; 0: none. */
+/* The period of the coordinate that is shown; 0: none, or it is no coordinate. */
 double plan_period(const plan *, const char *shown);
 /* The energy that errors are relative to: the scene's, or H at the start. */
 double plan_energy_scale(const plan *);

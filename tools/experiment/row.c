@@ -83,7 +83,7 @@ nevh_counts row_counts(const nevh_stepper *s, nevh_counts before) {
     return c;
 }
 
-/* Of all steps tried, those that were too long for the tolerance included. */
+/* The mean over all steps tried, those too long for the tolerance included. */
 static double mean_step(const work *w) {
     int each = nevh_integrator_gradients(w->row->scheme);
     double evaluations = (double)w->row->counts.gradients;
@@ -156,7 +156,8 @@ static bool compares_states(const plan *p, const row *r) {
     return r->t_end - p->run->t_start >= least * span;
 }
 
-/* What broke off is out of step, if that was seen, or is compared no longer. */
+/* The state error of a run that broke off counts if it is out of step; else it is
+   unknown. */
 static double state_error_of(const plan *p, const row *r,
                              const nevh_state_error *state) {
     double error = nevh_state_error_result(state);
@@ -274,9 +275,9 @@ static void work_free(work *w) {
     free(w->p);
 }
 
-/* Where a scheme with a tolerance has to end steps for others to look at its
-   states: so far apart that the tolerance, not dt, says how long its steps are.
-   Of H of time it stays dt, which sees what changes within it. */
+/* Sets the distance at which a scheme with a tolerance ends steps for observers: so
+   long that the tolerance, not dt, limits its steps. If H reads the time it stays
+   dt, so that changes within dt are seen. */
 static void space_ends(work *w) {
     static const double limited = 0.5, longer = 4, fewest = 16;
     row *r = w->row;

@@ -60,27 +60,27 @@ typedef struct {
 } row_list;
 row_list rows_of(const plan *);
 void rows_free(row_list *);
-/* What observes the energy of a row's run. */
+/* Creates the observer of the energy of a row's run. */
 nevh_energy *row_energy(const plan *, const row *, const nevh_stepper *);
 /* follow.c: where the run leaves the verdict open, from a longer one, as far as
    the budget goes. */
 void row_follow(const plan *, row *);
-/* Whether its energy drifts, as far as is known: a run that is too short to
-   tell goes by the scheme. */
+/* True if its energy drifts, as far as is known: a run that is too short to decide
+   has the property of its scheme. */
 bool row_drifts(const row *);
-/* Where it will end: by a run that nobody watches; at the start where it has no
+/* The time at which it will end, by a run without observers; the start if it has no
    numbers. */
 double row_end(const plan *, const row *);
-/* Of a row that ran in a hurry: when it became unstable. */
+/* Finds the time at which a row that ran in a hurry became unstable. */
 void row_finish(const plan *, row *);
 /* Since those before. */
 nevh_counts row_counts(const nevh_stepper *, nevh_counts before);
 /* stepper_cache.c: planned for that row, by whom it is given back. */
 nevh_stepper *row_stepper(const plan *, const row *, bool balance);
-/* Where compiling pays for the rows that are timed, all together, the steps of all
-   that can be are compiled, so that they are comparable, else of none: the first rows
-   that are timed decide, whatever the cache holds.
-   alone   whether it has to pay in one run of one row, as in nevh run; else in all
+/* Compiles the steps of all rows that allow it, or of none, so that times are
+   comparable: as it pays for the rows that are timed first, all together, whatever
+   the cache holds.
+   alone   true: it has to pay in one run of one row, as in nevh run; else in all
            runs of all */
 void rows_settle(const plan *, row *const rows[], size_t count, bool alone);
 /* As row_stepper, of a row that is to be timed. */
@@ -111,7 +111,7 @@ int row_fails(const plan *, const row *);
 void observe_orders(row rows[], size_t count);
 void row_notes(const options *, const plan *, const row rows[], size_t count,
                list *notes);
-/* Of whose rows the steps are compiled. */
+/* Notes the rows whose steps are compiled. */
 void native_notes(const plan *, const row rows[], size_t count, list *notes);
 /* time_words.c: rows whose steps pass over what H does in time; and over a
    pole. */
@@ -158,7 +158,7 @@ void energies_words(const plan *, const row rows[], size_t count, list *words);
 /* match.c: the dt with which the row costs as much as verlet with its dt, where
    the plan asks for that. */
 void match_row(const plan *, row *);
-/* Whether that cannot be told, or no dt is as cheap. */
+/* True if that is unknown, or no dt is as cheap. */
 bool match_unmatched(const plan *, const row *);
 bool match_dearer(const plan *, const row *);
 

@@ -87,12 +87,12 @@ static bool has_tolerance(const plan *p, const row *r) {
     return r->tolerance > 0 && !p->hurried;
 }
 
-/* Of a search, in which it chose the tolerance. */
+/* True for adaptive rows of a search, which chose the tolerance itself. */
 static bool has_mean_step(const plan *p, const row *r) {
     return r->tolerance > 0 && p->hurried;
 }
 
-/* What is to be said where it holds for a row. */
+/* Adds each note that holds for some row. */
 static void note_rows(const plan *p, const row rows[], size_t count,
                       list *notes) {
     static const struct {

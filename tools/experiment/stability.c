@@ -35,7 +35,7 @@ static const char *resonance(const nevh_integrator *scheme, double x) {
     return fabs(angle - M_PI / 2) < near_by ? "four" : NULL;
 }
 
-/* Of methods with a space of their own limits are known to 1/32. */
+/* Limits of schemes of an extended phase space are known to 1/32. */
 bool stability_exceeded(const nevh_integrator *scheme, double limit, double x) {
     bool extended = nevh_integrator_symplectic(scheme) == NEVH_EXTENDED;
     return x > (extended ? limit - 1. / 32 : limit);
@@ -138,7 +138,7 @@ pace stability_pace(const nevh_system *system, const nevh_integrator *scheme,
     return fastest;
 }
 
-/* Whether it is the first such row of its integrator and dt. */
+/* True if it is the first unstable row of its integrator and dt. */
 static bool is_first(const row rows[], size_t i) {
     for (size_t k = 0; k < i; k++)
         if (rows[k].scheme == rows[i].scheme && rows[k].dt == rows[i].dt &&

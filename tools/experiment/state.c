@@ -72,7 +72,7 @@ int plan_reference(plan *p, double end) {
     return TOOL_OK;
 }
 
-/* Whether the run goes on after what is known. */
+/* True if the run goes on after the horizon of the reference. */
 static bool is_beyond(const plan *p) {
     return p->reference &&
            p->reference_end > nevh_reference_horizon(p->reference);
@@ -159,8 +159,8 @@ static list names_out_of_step(const row rows[], size_t count) {
     return names;
 }
 
-/* Of the rows that ran, the first whose cell would be empty for no reason that
-   is told elsewhere. */
+/* The first row that ran whose state error is unknown for no reason given
+   elsewhere. */
 static const row *first_unknown(const plan *p, const row rows[], size_t count) {
     for (size_t i = 0; i < count && p->reference && !is_beyond(p); i++)
         if (rows[i].ran && isnan(rows[i].state_error))

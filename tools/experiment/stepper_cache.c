@@ -78,7 +78,7 @@ nevh_stepper *row_stepper(const plan *p, const row *r, bool balance) {
     return plan_new(p, r, balance);
 }
 
-/* Those that were refused, or failed, keep the message, and are not kept. */
+/* Keeps the stepper; one that was refused or has failed is freed. */
 void row_stepper_keep(const plan *p, const row *r, bool balance,
                       nevh_stepper *s) {
     size_t i = 0;
@@ -91,7 +91,7 @@ void row_stepper_keep(const plan *p, const row *r, bool balance,
         nevh_stepper_free(s);
 }
 
-/* Whether an earlier row has steps that are planned alike. */
+/* True if an earlier row has steps that are planned alike. */
 static bool has_its_like(row *const rows[], size_t i) {
     const row *r = rows[i];
     for (size_t k = 0; k < i; k++)

@@ -36,7 +36,7 @@ char *stop_words(const plan *p, double t) {
                       nevh_scene_stop_text(p->scene));
 }
 
-/* Of rows that stopped, the one that did so first, or last; NULL: none. */
+/* The row that stopped first, or last; NULL: none stopped. */
 static const row *outermost(const row rows[], size_t count, bool last) {
     const row *found = NULL;
     for (size_t i = 0; i < count; i++)

@@ -13,7 +13,7 @@ static size_t count_jumps(const nevh_timing *timing) {
     return count;
 }
 
-/* Whether the longest steps may pass over a change. */
+/* True if the longest steps may pass over a change. */
 static bool is_fast(const plan *p) {
     double longest = 0, shortest = nevh_timing_shortest(p->timing, NULL, NULL);
     for (size_t i = 0; i < p->dts; i++)

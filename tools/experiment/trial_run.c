@@ -106,7 +106,7 @@ static void look(trial *f, int i, double t) {
         look_for_edge(f, t);
 }
 
-/* Whether the run would end here. */
+/* True if the scene stops the run here. */
 static bool is_stopped(trial *f, double t) {
     bool reached;
     memcpy(f->trial, f->z, 2 * f->plan->n * sizeof *f->z);
@@ -137,7 +137,7 @@ static void run(trial *f) {
     nevh_stepper *s = f->stepper;
     double begin = p->run->t_start, t = begin, h = (p->t_end - t) / SAMPLES;
     int status = nevh_stepper_status(s);
-    /* Of a large H a sample alone may take all that is allowed. */
+    /* A sample alone may use the whole budget for a large H. */
     int parts = f->instances > large ? PARTS : 1;
     look(f, 0, t);
     for (int i = 1; !status && i <= SAMPLES && work_of(f) < enough; i++) {
@@ -306,7 +306,7 @@ static void tell_horizon(const plan *p, const trial_run *f, list *notes) {
     free(range);
 }
 
-/* Of the time followed, and what it means for a longer run. */
+/* Notes the time followed, and its meaning for a longer run. */
 static void tell_outlook(const plan *p, const trial_run *f, list *notes) {
     const char *unit = nevh_scene_label(p->scene, "t");
     const char *space = *unit ? " " : "", *per = *unit ? "/" : "";
@@ -349,7 +349,7 @@ static void tell_outlook(const plan *p, const trial_run *f, list *notes) {
     }
 }
 
-/* What H does with time faster than a step. */
+/* Notes changes of H with time that are faster than a step. */
 static void tell_changes(const plan *p, list *notes) {
     const char *unit = nevh_scene_label(p->scene, "t"), *effect = "";
     const char *space = *unit ? " " : "";

@@ -41,7 +41,7 @@ int columns_add(quantities *, const char *name);
 /* Before a run of that scheme, with the plan's first dt: shadow_error is of that.
    returns  the status; the message is that of the shadow */
 int columns_follow(quantities *, const char *integrator, double dt);
-/* What is not finite is NAN. */
+/* Computes the values; those that are not finite become NAN. */
 void columns_values(quantities *, double t, const double q[], const double p[],
                     double values[]);
 /* The axis: name and unit.  To be freed. */

@@ -23,7 +23,7 @@ static bob_list bobs_of(nevh_scene *s) {
     return b;
 }
 
-/* Of part i; NANs where its formulas have no value. */
+/* The four values of part i; NAN for formulas without a value. */
 static void part(nevh_scene *s, size_t i, double t, const double q[],
                  const double p[], double values[4]) {
     for (size_t k = 0; k < 4; k++)
@@ -61,8 +61,8 @@ static void base_of(const char *formula, char base[], size_t size) {
         base[0] = '\0';
 }
 
-/* What all bobs are placed by, numbers apart; x or y where that is not one
-   name.  The unit is that of any that has one. */
+/* The label of the axis that all bobs share, numbers apart; x or y if they differ.
+   The unit is that of any that has one. */
 static char *axis_label(const plan *p, const bob_list *b, size_t which) {
     char name[64] = "", other[64];
     const char *unit = "";
@@ -109,7 +109,7 @@ static void draw_rod(plot *to, const double values[4]) {
     plot_point(to, series, values[2], values[3]);
 }
 
-/* Where all is at the end. */
+/* Draws the rods at the end of the run. */
 static void draw_rods(plot *to, nevh_scene *s, const orbit *o) {
     double values[4];
     for (size_t i = 0; i < nevh_scene_part_count(s); i++)
@@ -149,7 +149,7 @@ static void draw(plot *to, const bob_list *b, const orbit *o) {
         draw_bob(to, b, bob, o, trails[bob]);
 }
 
-/* How often the slowest of those that move goes round. */
+/* The number of turns of the slowest bob that moves. */
 static double least_turns(const bob_list *b, const orbit *o) {
     double least = INFINITY;
     for (size_t i = 0; i < b->count; i++) {
@@ -205,7 +205,7 @@ plot *plot_configuration(run_picture *picture) {
 
 enum { FRAMES = 100, EACH = 10, TRAIL = 25 * EACH, MOST_PANELS = 4 };
 
-/* Of all parts, four numbers each. */
+/* Writes four values of each part. */
 static void fill_parts(void *data, double t, const double q[], const double p[],
                        double values[]) {
     const bob_list *b = data;
@@ -225,8 +225,7 @@ static void follow_evenly(run_picture *picture, bob_list *b) {
     free(even.time);
 }
 
-/* What the first orbit reaches, and some room: where others leave that, they are
-   seen to leave. */
+/* The range of the first orbit with a margin: other orbits are seen to leave it. */
 static void find_reach(const orbit *o, size_t parts, double low[2],
                        double high[2]) {
     static const double room = 0.2;

@@ -275,7 +275,7 @@ static void note(const flow_job *j, const options *o, list *notes) {
         list_print(notes, "dt = %.9g: the first of the list", p->dt[0]);
 }
 
-/* What a scheme does to the area that H keeps. */
+/* Notes the change by a scheme of the area, which the exact flow of H keeps. */
 static void tell_change(const flow_row *r, double ratio, double t, list *to) {
     const char *way = ratio > 1 ? "grows" : "shrinks";
     if (fabs(ratio - 1) < 0.1)

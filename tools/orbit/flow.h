@@ -24,7 +24,7 @@ typedef struct {
     size_t rows;
 } flow_job;
 
-/* Whether the area is certain to 1e-6 of it, as far as the panels tell. */
+/* True if the panels give the area to 1e-6 of it. */
 bool flow_resolved(nevh_loop_area);
 /* flow_plot.c: the shapes at all times, a row of panels an integrator.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */

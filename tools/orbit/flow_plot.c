@@ -43,9 +43,8 @@ static bool keeps(const flow_row *r) {
            !isnan(nevh_loop_result(r->loop, 0).area);
 }
 
-/* Those of symplectic integrators, where there are any: others may leave it. Of
-   shapes that are not much larger than at first: what others leave is not
-   shown. */
+/* The window holds the shapes of symplectic integrators, if there are any; others
+   may leave it. Shapes that are much larger than at first are left out. */
 static window find_window(const flow_job *j) {
     static const double large = 4;
     window w = {INFINITY, -INFINITY, INFINITY, -INFINITY};
@@ -75,7 +74,7 @@ static window find_window(const flow_job *j) {
     return w;
 }
 
-/* Where neighbours are far from each other the outline is torn. */
+/* Draws the outline, interrupted where neighbouring points are far apart. */
 static void draw_outline(plot *to, const flow_job *j, const nevh_loop *l,
                          size_t time, double shift, plot_form form,
                          const window *w) {

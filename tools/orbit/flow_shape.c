@@ -148,7 +148,7 @@ int shape_curve(void *data, size_t count, const double s[], double q[],
     return 0;
 }
 
-/* What --shape says. */
+/* Reading --shape. */
 
 static const char *const forms[] = {"disc", "box", "cat", "loop"};
 
@@ -321,7 +321,7 @@ static int read_given(shape *c, const options *o, const char *text) {
     return status;
 }
 
-/* How far the orbit of the scene goes, in 1000 steps of the first scheme. */
+/* The extent of the scene's orbit in 1000 steps of the first scheme. */
 typedef struct {
     size_t n;
     double *low, *high;

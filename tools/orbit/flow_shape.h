@@ -29,7 +29,7 @@ void shape_free(shape *);
 /* A nevh_curve_fn; data is the shape. */
 int shape_curve(void *data, size_t count, const double s[], double q[],
                 double p[]);
-/* Where the curve has corners; returns how many. */
+/* The parameters of the corners of the curve; returns their number. */
 size_t shape_corners(const shape *, double corner[FLOW_CORNERS]);
 
 #endif

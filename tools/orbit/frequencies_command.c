@@ -21,7 +21,7 @@ typedef struct {
     nevh_spectral_samples *samples;
 } observed;
 
-/* What one run shows of one of them. */
+/* The lines of one observed column in one run. */
 typedef struct {
     char *name;
     nevh_spectral_line line[LINES];
@@ -41,7 +41,7 @@ typedef struct {
     int worst;
 } job;
 
-/* Of the coordinates that are observed. */
+/* Finds the lengths over which H varies in the coordinates that are observed. */
 static void find_lengths(job *j) {
     const plan *p = &j->plan;
     nevh_options o = plan_options(p, p->gradients.item[0]);
@@ -136,7 +136,7 @@ static int run(job *j, const char *integrator, size_t finer, char **why) {
     return status;
 }
 
-/* What of an angle that goes round is quasi-periodic. */
+/* Makes an angle that goes round quasi-periodic; returns the name of the result. */
 static char *straighten(const observed *a) {
     static const double turn = 6.283185307179586;
     if (!nevh_spectral_samples_straighten(a->samples, a->period))
@@ -186,7 +186,7 @@ static void add_row(job *j, const options *o, const char *integrator,
     table_shown(t, "%.4f", l->phase);
 }
 
-/* Whether it never turns, but for rounding. */
+/* True if it changes in one direction only, up to rounding. */
 static bool is_monotone(const double x[], size_t count) {
     static const double rounding = 1e-12;
     double low = x[0], high = x[0], forth = 0, back = 0;
@@ -198,8 +198,8 @@ static bool is_monotone(const double x[], size_t count) {
     return fmin(forth, back) <= rounding * fmax(high - low, fabs(high));
 }
 
-/* What grows steadily is no sum of oscillations.
-   returns  whether it does, with the reason in the words */
+/* Refuses a column that grows steadily, which is no sum of oscillations.
+   returns  true if it does, with the reason in the words */
 static bool judge_line(job *j, const char *integrator, const char *name,
                        const double x[], size_t count, double h) {
     static const double straight = 0.9;
@@ -225,7 +225,8 @@ static bool judge_line(job *j, const char *integrator, const char *name,
     return line || is_monotone(x, count);
 }
 
-/* Where samples of the whole run have no room, those of its beginning tell. */
+/* Notes that only the beginning of the run is analysed, when samples of all of it
+   do not fit. */
 static void judge_length(job *j, const char *integrator, const char *name,
                          double length, double run) {
     if (length < 0.49 * run)
@@ -263,8 +264,8 @@ static void leave_out_rounding(const observed *a, spectrum *of) {
     of->found = kept;
 }
 
-/* Of what was sampled last.
-   returns  TOOL_OK, also where there is none; TOOL_USAGE, with a message */
+/* Analyses the last samples.
+   returns  TOOL_OK, also if there is no line; TOOL_USAGE, with a message */
 static int find_spectrum(job *j, const char *integrator, observed *a, bool told,
                          spectrum *of) {
     size_t count, words = j->words.count;
@@ -376,7 +377,7 @@ static int analyse(job *j, const options *o, const char *integrator) {
     return status;
 }
 
-/* Of an integrator. */
+/* Analyses the run of one integrator. */
 static int run_and_analyse(job *j, const options *o, const char *integrator) {
     char *why = NULL;
     int status = run(j, integrator, 1, &why);

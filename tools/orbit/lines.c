@@ -39,7 +39,7 @@ int lines_open(line_file *l, const char *name) {
     return l->file < 0 ? unwritten(l) : TOOL_OK;
 }
 
-/* What was there gives way to lines that could be written. */
+/* Replaces the earlier file once the first lines could be written. */
 static void settle(line_file *l) {
     l->waits = false;
     if (output_close(&l->claimed, l->stuck ? TOOL_USAGE : TOOL_OK))
@@ -56,7 +56,7 @@ static int open_again(line_file *l, const char *name) {
     return TOOL_OK;
 }
 
-/* Of the first bytes; false when there are less. */
+/* Digests the first bytes; false if the file has fewer. */
 static bool digest_file(int file, uint64_t bytes, uint64_t *digest) {
     char block[1 << 14];
     *digest = digest_begin();

@@ -16,8 +16,8 @@ typedef struct {
     int status;
 } orbit;
 
-/* Those that are asked for by name or by --dt: all that fit; else the one with
-   the integrator and dt that are given. */
+/* The orbits chosen by name or by --dt: all that fit; else the one with the
+   integrator and dt given. */
 typedef struct {
     orbit *item;
     size_t count;
@@ -38,7 +38,7 @@ int orbit_follow(orbit *, const row_times *, size_t columns, orbit_fill *,
    one. */
 row_times orbit_dense_times(const plan *);        /* time: to be freed */
 const double *orbit_row(const orbit *, size_t i); /* after t */
-/* How often a column goes round: passes its mean, over 2. */
+/* The number of turns of a column: its passages through the mean, over 2. */
 double orbit_turns(const orbit *, size_t k);
 
 #endif

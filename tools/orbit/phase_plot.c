@@ -150,7 +150,7 @@ static void follow(run_picture *picture, column_panels *c) {
     free(dense.time);
 }
 
-/* How often the slowest panel of those that move goes round. */
+/* The number of turns of the slowest panel that moves. */
 static double least_turns(const orbit *o, size_t panels) {
     double least = INFINITY;
     for (size_t k = 0; k < 2 * panels; k += 2) {

@@ -91,8 +91,8 @@ static bool is_symplectic(const orbits_of *o) {
                               o->integrator, &transformed)) == NEVH_YES;
 }
 
-/* Where symplectic integrators go, if there are any, and some room; of an angle a
-   period. */
+/* The range of symplectic integrators, if there are any, with a margin; of an angle
+   a period. */
 static portrait_window find_window(const job *j) {
     static const double room = 0.2;
     portrait_window w = {INFINITY, -INFINITY, INFINITY, -INFINITY};
@@ -124,7 +124,8 @@ static int by_size(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Of the members, some where they are many; of few others between. */
+/* Chooses energies of members, if they are many; of a single member, energies up to
+   it and beyond. */
 static size_t choose_levels(const job *j, double energy[MOST_LEVELS]) {
     size_t count = j->members.count, chosen = 0;
     double *all = tool_allocate(count, sizeof *all);
@@ -288,7 +289,7 @@ static int read_data(job *j, const options *o) {
     return status;
 }
 
-/* Whether it is another one, a period on. */
+/* True if it is an equilibrium found before, shifted by a period. */
 static bool is_again(const job *j, size_t i) {
     const equilibrium *found = j->levels.found, *e = &found[i];
     const portrait_window *w = &j->levels.window;
@@ -300,7 +301,7 @@ static bool is_again(const job *j, size_t i) {
     return false;
 }
 
-/* Those near the start first. */
+/* Prints the equilibria, those near the start first. */
 static void print_equilibria(const job *j) {
     enum { MOST_SHOWN = 200 };
     static const char *const kinds[] = {"centre", "saddle", "degenerate"};

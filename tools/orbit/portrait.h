@@ -10,7 +10,7 @@ typedef struct {
     double low_x, high_x, low_y, high_y;
 } portrait_window;
 
-/* Where dH is 0, of one degree of freedom. */
+/* A zero of dH, for one degree of freedom. */
 typedef struct {
     double x, y, energy;
     double distance; /* from the start, in parts of the window */

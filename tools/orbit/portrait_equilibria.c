@@ -226,7 +226,7 @@ static bool changes_signs(const survey *s, size_t i, size_t k) {
     return true;
 }
 
-/* Of the eight around it none is smaller, and one is larger. */
+/* True if none of the eight neighbours is smaller, and one is larger. */
 static bool is_smallest(const survey *s, size_t i, size_t k) {
     const double *f = s->f + k * COLUMNS + i, *g = f + COLUMNS * ROWS;
     double here = hypot(f[0], g[0]);

@@ -48,8 +48,8 @@ void levels_free(levels *l) {
 
 /* Curves. */
 
-/* Where a level crosses an edge of the grid: from a corner to the one on its
-   right, or, those after them, to the one above it. */
+/* The point at which a level crosses an edge of the grid. The first ACROSS * UP
+   edges go from a corner to its right, the others upwards. */
 typedef struct {
     double x, y;
     size_t count, next[2]; /* crossings that a curve goes on to */

@@ -98,8 +98,8 @@ static char *read_all(const char *name, size_t *size) {
     return all;
 }
 
-/* That the parts fill the file; each is compared alone, since a sum of sizes
-   that are not true may overflow. */
+/* True if the parts fill the file; each is compared alone, since a sum of wrong
+   sizes may overflow. */
 static bool adds_up(const header *h, size_t size) {
     const size_t fixed = sizeof *h + sizeof(uint64_t), state = sizeof(double);
     return h->size == size && h->n <= size / (2 * state) &&
@@ -183,7 +183,7 @@ static int compare_settings(const char *name, const char *saved,
     return TOOL_OK;
 }
 
-/* Of a file that is whole. */
+/* Reads the state from a complete file. */
 static int take(const char *name, const char *all, const char *settings,
                 run_state *s) {
     header h;

@@ -36,7 +36,7 @@ static void note_signal(int number) {
     interrupted = number;
 }
 
-/* What to run. */
+/* Choice of the rows. */
 
 static void take_times(job *j) {
     const plan *p = &j->plan;
@@ -105,7 +105,7 @@ static int check_options(const options *o) {
     return TOOL_OK;
 }
 
-/* Those at the times of --data. */
+/* Sets the rows to the times of --data. */
 static int read_data(job *j) {
     const options *o = j->options;
     if (!o->fit.data)

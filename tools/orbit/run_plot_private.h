@@ -38,7 +38,7 @@ int picture_follow(run_picture *, const row_times *, size_t columns,
                    orbit_fill *, void *data);
 /* The same for columns, of which shadow_error needs to know whose run it is. */
 int column_panels_follow(run_picture *, const row_times *, column_panels *);
-/* Whether some of the orbits have the shadow H that is asked for: TOOL_OK, or
+/* Checks that some of the orbits have the shadow H that is shown: TOOL_OK, or
    TOOL_USAGE with the message printed. */
 int column_panels_check(const run_picture *, column_panels *);
 /* Ends a run that goes round often after about so many turns, unless its length

@@ -175,7 +175,7 @@ static nevh_sections *watch(job *j, const nevh_stepper *s) {
     return x;
 }
 
-/* How a run ended, of several the first that did not go on to the end. */
+/* Explains the end of a run; of several runs that ended early only the first. */
 static int explain(job *j, int status, const nevh_stepper *s,
                    const nevh_sections *x, const nevh_energy *energy) {
     const char *why = nevh_scene_message(j->plan->scene);
@@ -270,7 +270,8 @@ static void fill(table *t, const job *j, const list *items) {
     }
 }
 
-/* What crosses, and where: "theta", 0; "z - (x)", 0 where that is no number. */
+/* The left side of a crossing and its value: "theta", 0; "z - (x)", 0 if the right
+   side is no number. */
 static char *crossing_text(const nevh_scene_section *decl, double *at) {
     char *end;
     *at = strtod(decl->right, &end);
@@ -327,7 +328,7 @@ static void note(const job *j, const options *o, list *notes) {
         list_print(notes, "%s", j->ended);
 }
 
-/* What says why there is nothing to draw; a run that failed has said it. */
+/* Prints the reasons for an empty plot; a run that failed has printed its own. */
 static int refuse_empty(const job *j) {
     list reasons = {0};
     for (size_t i = 0; i < j->count; i++)
@@ -407,7 +408,8 @@ static int print(const job *j, const options *o, int status) {
     return status;
 }
 
-/* Who reads the rows may stop: the picture is written before. */
+/* Shows the rows and the picture. The picture is written first if a reader of the
+   rows that stops early would end the program. */
 static int show(const job *j, const options *o, int status) {
     bool first = plot_goes_first(o);
     int drawn = first ? draw(j, o, status) : status;

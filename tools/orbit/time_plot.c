@@ -33,7 +33,7 @@ static char *usual_names(const plan *p) {
     return text;
 }
 
-/* Those that were measured. */
+/* Joins the names of measured columns. */
 static char *joined(const list *names) {
     char *text = text_print("%s", "");
     for (size_t i = 0; i < names->count && i < MOST_PANELS; i++)
@@ -168,7 +168,7 @@ static void draw_orbit(plot *to, const run_picture *picture,
     }
 }
 
-/* Of a panel with several columns: their names. */
+/* The label of a panel: the names of its columns. */
 static char *panel_label(const run_picture *picture, const column_panels *c,
                          size_t panel) {
     static const char *const dashes[] = {"", " dashed", " dotted",

@@ -190,8 +190,8 @@ static void warn(trajectory *r, const char *text) {
     fprintf(stderr, "nevh: %s: warning: %s\n", r->plan->name, text);
 }
 
-/* That invariants are none, and what is wrong with an orbit whose energy changes
-   by a good part. */
+/* Warns of [invariants] that are not conserved, and of an orbit whose energy
+   changes by a good part. */
 static void doubt(trajectory *r) {
     static const double large = 0.1, all = 1; /* of the energy */
     static const double most_steps = 3e5;     /* of a second run */
@@ -315,7 +315,7 @@ static int tick(trajectory *r) {
     return status;
 }
 
-/* What is done between steps: last of the observers. */
+/* Checks for the end of the run between steps: last of the observers. */
 static int attend(void *data, size_t step, double t, const double q[],
                   const double p[]) {
     trajectory *r = data;
@@ -331,7 +331,7 @@ static int attend(void *data, size_t step, double t, const double q[],
     return r->status || r->finished || *r->clock.watch->signal;
 }
 
-/* What is saved. */
+/* Saving and restoring. */
 
 run_state *trajectory_state(trajectory *r) {
     nevh_stepper_save(r->stepper, r->now.memory);

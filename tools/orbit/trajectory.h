@@ -77,7 +77,7 @@ typedef struct {
                  double values[]);
     void *data;
 } more_columns;
-/* Where rows and remarks go: lines, or a page, or states to a function. */
+/* The output of rows and remarks: lines, a page, or a function of states. */
 typedef struct {
     line_file *lines;
     page *page; /* NULL: to the lines */
@@ -106,7 +106,7 @@ typedef struct {
    came.
    returns  TOOL_OK, TOOL_FAILED, TOOL_USAGE; messages are printed */
 int trajectory_follow(trajectory *, const trajectory_watch *);
-/* Whether that was for another reason than a signal. */
+/* True if that was for another reason than a signal. */
 bool trajectory_finished(const trajectory *);
 /* To and from what is saved; arrays are the trajectory's. */
 run_state *trajectory_state(trajectory *);

@@ -172,7 +172,7 @@ static void tell_longer(const advice *a, const row *r, list *words) {
                         "time that they take.");
 }
 
-/* That the error which was asked for does not see. */
+/* Warns of errors that the energy does not show. */
 static void warn(const advice *a, const row *r, list *words) {
     const plan *p = &a->search.plan;
     if (a->search.by_state || !p->reference)
@@ -276,7 +276,8 @@ static bool counts(const advice *a, size_t i) {
     return a->named || a->search.by_state || !study_keeps_energy(&a->study[i]);
 }
 
-/* Of those that count; at a floor: of those that shorter steps do not help. */
+/* Finds the smallest error of the studies that count; at_floor: of those that ended
+   at their floor. */
 static const study *most_exact(const advice *a, bool at_floor, double *least) {
     const study *best = NULL;
     *least = INFINITY;
@@ -298,8 +299,8 @@ static const char *floor_of(const study *l, double least) {
                : "rounding";
 }
 
-/* Where shorter steps were not tried of the most exact, others may tell what
-   they would find: such as reached their floor near the same error. */
+/* If the most exact study ended before its floor, another study whose floor is near
+   the same error shows the effect of shorter steps. */
 static char *reason(const advice *a, const study *l, double least) {
     static const double near = 30;
     double level;
@@ -316,7 +317,7 @@ static char *reason(const advice *a, const study *l, double least) {
                       "shortens the run");
 }
 
-/* Of those that give no error to choose by. */
+/* Prints the reason why no error is there to choose by. */
 static void tell_why(const advice *a) {
     const char *name = a->search.plan.name;
     const row *failed = NULL;

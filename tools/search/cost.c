@@ -41,8 +41,8 @@ static double least_work(const costs *c, double target) {
     return least;
 }
 
-/* Whether the coarsest step that keeps the target may be a cheap one: it costs
-   more than the last level that does not. */
+/* True if the coarsest step that keeps the target may be a cheap one: it costs more
+   than the last level that does not. */
 static bool is_promising(const costs *c, const study *l, double target) {
     static const double nearly = 2;
     double least = least_work(c, target);
@@ -79,7 +79,7 @@ static void refine_cheapest(costs *c) {
     }
 }
 
-/* Whether its time may be the least. */
+/* True if its time may be the least. */
 static bool may_win(const costs *c, const row *r, double target) {
     static const double nearly = 2.5;
     return r->work < nearly * least_work(c, target);
@@ -97,7 +97,7 @@ static bool is_shown(const costs *c, const study *l, const row *r,
     return r && cost_shows(c, l);
 }
 
-/* What a study needs for a target: one of its levels. */
+/* The level of a study for a target. */
 typedef struct {
     study *study;
     size_t level;
@@ -128,7 +128,8 @@ static void settle_cells(costs *c, const cell cells[], size_t count) {
     free(all);
 }
 
-/* Whether their steps are compiled is decided before the first is timed. */
+/* Times all cells. Compilation is decided for all of them before the first is
+   timed. */
 static void time_cells(costs *c) {
     cell *cells = tool_allocate(COST_TARGETS * c->count, sizeof *cells);
     size_t count = find_cells(c, is_compared, cells);
@@ -156,7 +157,7 @@ static void time_others(costs *c, bool shown) {
         }
 }
 
-/* Those that the table does not show are for programs to read. */
+/* Runs all studies. Only programs read levels that the table does not show. */
 static void run_studies(costs *c, const options *o) {
     enum { LEVELS = 8 };
     bool for_people = o->format == FORMAT_TABLE;

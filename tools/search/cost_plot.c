@@ -30,8 +30,8 @@ static double error_of(const drawing *d, const study *l, size_t k) {
     return study_error(&l->level[k], d->costs->search.by_state);
 }
 
-/* Whether a shorter step costs no more and errs less: where steps are so long
-   that solving them takes more work than it saves. */
+/* True if a shorter step costs no more and errs less: steps may be so long that
+   solving their equations takes more work than they save. */
 static bool is_outdone(const drawing *d, const study *l, size_t k) {
     for (size_t i = k + 1; i < l->count; i++)
         if (l->level[i].work <= l->level[k].work &&
@@ -60,8 +60,8 @@ static void draw_study(drawing *d, const study *l) {
     free(name);
 }
 
-/* Of a scheme with fixed steps, an order more is a steeper line: a line of that
-   order from the middle of the curve, a factor to the right of it. */
+/* Draws a line of the order of a scheme with fixed steps, a factor to the right of
+   the middle of its curve. */
 static void draw_guide(const drawing *d, const study *l) {
     static const double aside = 1.5, decades = 1.5;
     size_t drawn[2] = {0, 0}, count = 0;
@@ -110,7 +110,7 @@ static void draw_panel(drawing *d) {
             draw_study(d, &d->costs->study[i]);
 }
 
-/* Whether all that is shown has such counts: exact gradients evaluate no H, and
+/* True if all levels shown have such counts: exact gradients evaluate no H, and
    some schemes nothing but H. */
 static bool all_have(const costs *c, work_of *count) {
     for (size_t i = 0; i < c->count; i++)

@@ -19,7 +19,7 @@ static const study *cheapest(const costs *c, double target) {
     return best;
 }
 
-/* That for the most digits that are reached. */
+/* The cheapest row with the most digits that are reached. */
 static const row *most_digits(const costs *c, const study **l) {
     for (size_t k = COST_TARGETS; k-- > 0;) {
         *l = cheapest(c, cost_target[k]);

@@ -15,7 +15,7 @@ typedef struct {
     double whole; /* t_end before it was shortened; NAN: as asked for */
     bool all; /* studies are shown, not only those that are cheap somewhere */
 } costs;
-/* Whether its errors are to be compared with others'. */
+/* True if its errors are comparable with those of other studies. */
 bool costs_count(const costs *, const study *);
 /* NULL: none keeps the target. */
 const study *costs_cheapest(const costs *, double target);
@@ -26,8 +26,8 @@ bool cost_shows(const costs *, const study *);
 table *cost_table(const costs *);
 /* The reference is not good enough for these digits. */
 bool cost_is_beyond(const costs *, size_t target);
-/* What stands in the table where no step does: "-", "floor", ...; NULL: a step
-   does. */
+/* The entry of the table if no step keeps the target: "-", "floor", ...; NULL: a
+   step does. */
 const char *cost_word(const costs *, const study *, size_t target);
 /* No integrator that is shown has anything there: the column is left out. */
 bool cost_is_empty(const costs *, size_t target);

@@ -25,8 +25,7 @@ typedef struct {
     size_t count;
 } slope;
 
-/* Whether another run is more exact and takes no longer: nobody would pay for
-   that level's digits. */
+/* True if another level is more exact and takes no longer. */
 static bool is_dominated(const study *l, size_t i, bool by_state) {
     for (size_t k = 0; k < l->count; k++)
         if (k != i && l->level[k].seconds <= l->level[i].seconds &&

@@ -159,7 +159,7 @@ static double time_of(const context *c, nevh_field *f) {
     return 1e9 * numbers_median(seconds, ROUNDS_TIMED);
 }
 
-/* What the choice of steps expected, the worst of all variables. */
+/* The errors that planning expects of its differences, the worst of all variables. */
 static void take_estimates(const context *c, nevh_field *f, finding *g) {
     for (size_t i = 0; i < nevh_field_step_count(f); i++) {
         nevh_step_report r = nevh_field_step_report(f, i);
@@ -304,7 +304,7 @@ static const char *find_yardstick(const plan *p) {
     return names[2];
 }
 
-/* What a step costs with differences, by a pilot of a few. */
+/* The work of a step with differences, from a pilot of a few steps. */
 static double step_work(const context *c) {
     enum { PILOT = 32 };
     nevh_options o = gradient_options(c, "central4", 0);

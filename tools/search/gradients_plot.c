@@ -28,7 +28,7 @@ static double size_along(const orbit_states *o, const double values[],
     return most;
 }
 
-/* Where a variable rests its kind tells its size. */
+/* Finds the size of each variable; one that rests has that of its kind. */
 static void fill_sizes(drawing *d) {
     const orbit_states *o = &d->context->exact;
     double most[2] = {0, 0}, low = INFINITY, high = 0;
@@ -47,7 +47,7 @@ static void fill_sizes(drawing *d) {
     d->unit = high > 0 ? pow(10, round(log10(high))) : 1;
 }
 
-/* Of all variables. */
+/* The error of the gradient in all variables. */
 static double error_at(const drawing *d, const char *gradient, double x) {
     size_t n = d->context->exact.n;
     double *steps = tool_allocate(2 * n, sizeof *steps);
@@ -111,8 +111,8 @@ static void draw_choice(const drawing *d, const char *gradient, size_t curve) {
         plot_point(d->to, series, step, error);
 }
 
-/* Of a method without steps; what is far below rounding would only make the
-   axis long. */
+/* Draws the level of a method without steps; the axis would be long for an error
+   far below rounding. */
 static void draw_level(const drawing *d, const char *gradient) {
     static const double least = 1e-17;
     double error = gradient_error(d->context, gradient, NULL);

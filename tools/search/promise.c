@@ -7,7 +7,7 @@
 
 static const double lengths = 3;
 static const double most_work = 6; /* as nevh_counts_seconds */
-/* What is left of an error that a longer run may have: the last bits of h change
+/* The share of the target that a longer run may use: the last bits of h change
    errors that walk. */
 static const double margin = 0.98;
 
@@ -28,7 +28,7 @@ static row again(const plan *run, const row *r, promise *made) {
     return copy;
 }
 
-/* How far the orbit is from the true one, of which the energy says nothing. */
+/* Compares the orbit with the true one, which the energy does not determine. */
 static void compare_orbit(const plan *p, row *r) {
     row copy = again(p, r, NULL);
     r->state_error = copy.state_error;

@@ -7,14 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How much longer the whole is than the pilot. */
+/* The length of the whole run over that of the pilot. */
 static double stretch(const advice *a) {
     double start = a->search.plan.run->t_start;
     return (a->whole - start) / (a->pilot - start);
 }
 
-/* How many places finer a level must be for an error `over` times less, as its
-   order tells, at least one. */
+/* The number of grid places, at least one, that lessen the error by a factor of
+   `over`, by the order. */
 static int places_short(const row *r, double over) {
     double places = nevh_integrator_adaptive(r->scheme)
                         ? GRID_STRIDE * log10(over)
@@ -29,7 +29,8 @@ static double patience_for(const advice *a, const row *pilot) {
     return fmax(more * pilot->work * stretch(a), a->search.plan.patience);
 }
 
-/* Where the energy drifts, finer by as much as the error grows. */
+/* The place of the pilot's choice, finer if the energy drifts, as its error grows
+   with the length. */
 static int first_place(const advice *a, const study *l) {
     const row *r = advice_keeps(a, l);
     double over = study_error(r, a->search.by_state) / a->target * stretch(a);
@@ -37,7 +38,7 @@ static int first_place(const advice *a, const study *l) {
     return row_drifts(r) && over > 1 ? k + places_short(r, over) : k;
 }
 
-/* Whether the next place that is coarser was tried. */
+/* True if the next coarser place was tried. */
 static bool was_polished(const study *l, size_t level) {
     return level && l->k[level] - l->k[level - 1] == 1;
 }
@@ -97,7 +98,7 @@ static const study *usual_gradient(const advice *a, const study *l) {
     return NULL;
 }
 
-/* Whether the errors of a gradient may pass the target in the whole run, if they
+/* True if the errors of a gradient may pass the target in the whole run, when they
    grow with its length. */
 static bool adds_up(const advice *a, const study *l, const study *usual) {
     double least = INFINITY;

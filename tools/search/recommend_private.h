@@ -40,8 +40,8 @@ void advice_choose(advice *);
 /* promise.c: the answers on the whole run, against a reference, and for how
    long they keep the target in one three times as long. */
 void advice_follow(advice *, plan *);
-/* Of an answer: the time until which it keeps the target; INFINITY: to the end
-   of the longer run; NAN: unknown. */
+/* The time until which an answer keeps the target; INFINITY: to the end of the
+   longer run; NAN: unknown. */
 double advice_holds(const row *);
 
 /* advice.c */

@@ -15,8 +15,8 @@ const row *advice_keeps(const advice *a, const study *l) {
                         : NULL;
 }
 
-/* Of those that take gradients: Taylor series that are far ahead do not end the
-   search for the best of the others. */
+/* The least work of the studies that take gradients: Taylor series that are far
+   ahead do not end the search for the best of the others. */
 static double least_work(const advice *a) {
     double least = INFINITY;
     for (size_t i = 0; i < a->count; i++) {
@@ -84,8 +84,8 @@ static bool was_timed(const study *l) {
     return timed;
 }
 
-/* Those that may win, or be the runner-up or other evidence, and are not timed
-   yet, or have a cheaper level since; returns how many. */
+/* Lists the rows that may win, be the runner-up or give other evidence, and are not
+   timed yet, or have a cheaper level since; returns their number. */
 static size_t list_untimed(const advice *a, row *found[]) {
     double least = least_work(a);
     study *second = least_of(a, false, least_of(a, false, NULL));

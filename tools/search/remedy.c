@@ -7,8 +7,8 @@
 
 /* The error that steps are for. */
 static const double target = 0.01;
-/* Of all runs together, as nevh_counts_seconds; of steps of a run; and of one that a
-   guess may be made from. */
+/* Limits: work of all runs together, as nevh_counts_seconds; steps of a run; and
+   steps of a run from which a guess may be made. */
 static const double most_work = 4, most_steps = 3e5, enough_steps = 1e5;
 enum { FINER = 3, HALVINGS = 60 };
 
@@ -104,7 +104,8 @@ static double guess(const search *s, double dt, double keeps, double longer_dt,
     return rounded_down(dt * pow(keeps / span, 1 / power), 1);
 }
 
-/* Of a run with half the step, by how their number has grown. */
+/* Predicts the number of steps of a run with half the step from the growth of that
+   number. */
 static double next_steps(const search *s, double dt, double steps,
                          double steps_before) {
     double span = s->plan->t_end - s->plan->run->t_start;
@@ -151,8 +152,8 @@ static bool needs_remedy(const row *r) {
            (drifts || r->energy.verdict == NEVH_UNSTABLE);
 }
 
-/* Of rows of one integrator that need one that with the shortest steps, where
-   `first` is the first of them; else NULL. */
+/* The row with the shortest steps of those of one integrator that need a remedy;
+   NULL unless `first` is the first of them. */
 static const row *shortest(const row rows[], size_t count, const row *first) {
     const row *found = first;
     for (const row *r = rows; r < rows + count; r++) {

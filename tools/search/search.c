@@ -31,7 +31,7 @@ static double *ordered(const double numbers[], size_t count) {
     return copy;
 }
 
-/* Those of compilers that have ended. */
+/* CPU seconds of compilers that have ended. */
 static double seconds_of_children(void) {
     struct rusage children;
     getrusage(RUSAGE_CHILDREN, &children);
@@ -71,7 +71,7 @@ bool search_is_late(const search *s) {
            s->seconds;
 }
 
-/* Where a second is worth less work than anybody expects it ends, too. */
+/* True, too, on a machine so slow that the seconds end before the work does. */
 bool search_is_over(const search *s, double share) {
     return s->spent > share * s->budget || search_is_late(s);
 }

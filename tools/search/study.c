@@ -143,16 +143,15 @@ static void run_given(search *s, study *l) {
     l->end = STUDY_GIVEN;
 }
 
-/* By what the scheme claims. */
+/* True if the scheme is documented to keep the energy. */
 static bool is_kept(const search *s, const study *l) {
     return !s->by_state && !s->keeping &&
            nevh_integrator_preserves_energy(l->scheme) == NEVH_YES;
 }
 
-/* Whether the energy is kept at steps so long that orbits are not: a run of
-   coarse steps goes on after the end where that comes too soon.  Schemes that
-   claim it are taken at their word; where H is quadratic, Gauss does so, too.
- */
+/* True if the energy is kept at steps so long that orbits are not: coarse steps run
+   on past the end if it comes too soon. Schemes documented to do so are not tried;
+   Gauss schemes do, too, for a quadratic H. */
 static bool keeps_at_any_step(search *s, const study *l) {
     static const double kept = 1e-8, steps = 8;
     enum { DOUBLINGS = 7 };
@@ -246,8 +245,8 @@ static size_t count_level(const study *l, bool by_state) {
     return count;
 }
 
-/* Whether shorter steps are of no use: at rounding at once, elsewhere when a
-   few were of none, since errors of coarse steps may be level, too. */
+/* True if shorter steps do not help: after one of them near rounding, elsewhere
+   after several, since errors of coarse steps may be level, too. */
 static bool is_level(const study *l, bool by_state) {
     static const double small = 1e-11, usual = 1e-2;
     size_t count = count_level(l, by_state);
@@ -275,7 +274,8 @@ static void give_up(study *l) {
         forget(l, l->count - 1);
 }
 
-/* What cannot take a first step, however short, will not take a shorter one. */
+/* True if the first step failed at each of the last few lengths; shorter ones would
+   fail, too. */
 static bool cannot_begin(const study *l) {
     enum { TRIES = 6 };
     size_t count = 0;
@@ -302,7 +302,7 @@ void study_descend(search *s, study *l) {
     }
 }
 
-/* How much less the other must work. */
+/* The factor by which the other study must work less. */
 static double lead(const study *l, const study *other, bool useless) {
     static const double behind = 2, far_behind = 8;
     bool higher = nevh_integrator_order(other->scheme) >=
@@ -367,8 +367,8 @@ static int place_between(const study *l, size_t i, double target,
     return k;
 }
 
-/* Where the coarsest level keeps the target, those up to the next stride, which
-   was unusable or too long for the run. */
+/* Adds levels up to the next stride when the coarsest level keeps the target; the
+   stride itself was unusable or too long for the run. */
 static void refine_top(search *s, study *l, double target, int gap) {
     int beyond = l->k[0] - GRID_STRIDE;
     while (study_error(&l->level[0], s->by_state) <= target &&

@@ -16,14 +16,13 @@ double grid_dt(int k);
 double grid_tolerance(int k);
 /* The coarsest k whose step is not longer than dt. */
 int grid_dt_place(double dt);
-/* Where a line through two points, on logarithmic axes, has that error. */
+/* The step at which a line through two points, on logarithmic axes, has that error. */
 double grid_between(const double dt[2], const double error[2], double target);
-/* What one digit more multiplies the work by: the slope of a line through log
-   work over -log error; NAN where fewer than two errors differ. */
+/* The factor of work for one digit more: the slope of a line through log work over
+   -log error; NAN if fewer than two errors differ. */
 double grid_digit_factor(const double error[], const double work[],
                          size_t count);
-/* Where the error is at most the target, the index of the least work; `count`
-   where it is nowhere. */
+/* The index of the least work with an error of at most the target; `count`: none. */
 size_t grid_cheapest(const double error[], const double work[], size_t count,
                      double target);
 
@@ -65,9 +64,10 @@ typedef struct {
  * tolerances of the plan. */
 search search_begin(const plan *, const options *, double budget);
 bool search_is_over(const search *, double share); /* of the budget */
-/* Whether no seconds are left. */
+/* True if no seconds are left. */
 bool search_is_late(const search *);
-/* Whether times may be measured again: seconds, of which no row depends. */
+/* True if times may be measured again: this takes seconds, and changes no other
+   column. */
 bool search_may_time(const search *);
 /* Says on stderr, after a second, what is running. */
 void search_progress(const search *, const row *);
@@ -84,11 +84,11 @@ void study_begin(search *, study *);
 /* Next: the one with the least work in its next level; NULL: none is open. */
 study *study_next(study studies[], size_t count);
 void study_descend(search *, study *);
-/* Whether the run has room for some steps of that place. */
+/* True if some steps of that place fit into the run. */
 bool study_fits_steps(const search *, int k);
-/* Whether shorter steps would not lessen the error, as its levels tell. */
+/* True if shorter steps would not lessen the error, by its levels. */
 bool study_ends_level(const study *, bool by_state);
-/* Whether another is so far ahead that shorter steps will not change it. */
+/* True if another study is so far ahead that shorter steps will not change it. */
 bool study_is_behind(const search *, const study *, const study others[],
                      size_t count);
 /* Measures the time of a level again, as often as asked for. */
@@ -99,18 +99,18 @@ void study_refine(search *, study *, double target, int gap);
 /* Levels in the widest gaps until there are so many. */
 void study_fill(search *, study *, size_t count);
 size_t study_run(search *, study *, int k); /* index of the level */
-/* Of states, or of the observable where rows have one; INFINITY: none. */
+/* The error of states, or of the observable if rows have one; INFINITY: none. */
 double study_error(const row *, bool by_state);
 const char *search_error(const search *); /* "energy", "state", "observable" */
-/* Whether its scheme takes gradients: Taylor series take none. */
+/* True if its scheme takes gradients; Taylor series take none. */
 bool study_takes_gradients(const study *);
 /* A level that failed, where none ran; NULL: some ran, or were refused. */
 const row *study_failure(const study *);
 /* The level of least work: of one scheme and gradient that is the cheapest, on a
    busy machine too; NULL: none keeps the target. */
 const row *study_cheapest(const study *, double target, bool by_state);
-/* Whether the energy says nothing of its orbits, being kept at any step: as
-   study_begin found. */
+/* True if the energy is kept at any step, and so gives no error of the orbit: found
+   by study_begin. */
 bool study_keeps_energy(const study *);
 
 /* fit.c: whether a gradient of that name fits. */
@@ -122,7 +122,7 @@ int plan_require_reference(plan *);
 /* Ends the plan earlier where runs of its integrators would take too long;
    returns the end that it had. */
 double plan_shorten(plan *, double budget);
-/* How much a search may work. */
+/* The default budget of work of a search. */
 enum { SEARCH_BUDGET = 15 };
 
 /* Every scheme that fits, and the gradient that costs least, unless others are
