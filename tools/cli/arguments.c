@@ -48,8 +48,8 @@ int read_names(options *o, const option_row *row, const char *argument) {
     return status;
 }
 
-/* Where the next NAME = VALUE begins: behind a comma, outside of brackets,
-   after which a name and "=" follow; other commas separate values. */
+/* Finds the comma before the next NAME = VALUE: outside of brackets, with a name
+   and "=" after it; other commas separate values. */
 static const char *next_assignment(const char *text) {
     const char *comma = NULL;
     int depth = 0;

@@ -37,13 +37,13 @@ COMMANDS(COMMAND_DECLARED)
 extern const command *const commands[]; /* until NULL */
 /* NULL, the message being printed. */
 const command *command_find(const char *name);
-/* That the command takes all options given, and draws the kind of picture.
+/* Checks that the command takes all options given, and draws the kind of picture.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int command_check(const command *, const options *);
 
 /* help.c: what nevh prints where no command is given. */
 void help_brief(FILE *);
-/* Of a command, or of all, as text or JSON. */
+/* Prints the help of a command, or of all, as text or JSON. */
 int help_on(const options *, const char *name);
 
 #endif

@@ -20,7 +20,7 @@ static char *text_from(const options *o, const char *file) {
     return text;
 }
 
-/* What is there is left alone; what could not be written whole is removed. */
+/* Writes a new file only; an incomplete one is removed. */
 static int write_new(const char *file, const char *text) {
     FILE *f = fopen(file, "wx");
     if (!f)

@@ -30,7 +30,7 @@ const char *number_text(char text[NUMBER_SIZE], double number) {
 
 double cpu_seconds(void) {
     struct timespec now;
-    /* That of the process counts in ticks where its time is limited. */
+    /* The clock of the process counts in ticks under a limit of CPU time. */
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }

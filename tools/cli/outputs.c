@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* What a symbolic link that stands for no file would make; to be freed. */
+/* The file that writing through a dangling symbolic link would create; to be freed. */
 static char *follow(const char *file) {
     enum { MOST_LINKS = 40, MOST_BYTES = 4096 };
     char target[MOST_BYTES], *at = text_print("%s", file);
@@ -24,7 +24,7 @@ static char *follow(const char *file) {
     return at;
 }
 
-/* Where a file is to be: its folder, and its name in it. */
+/* True if both names have the same folder and the same name in it. */
 static bool places_are_same(const char *a, const char *b) {
     struct stat folder[2];
     const char *name[2] = {a, b};
@@ -52,7 +52,7 @@ static bool is_same_place(const char *a, const char *b) {
     return same;
 }
 
-/* Whether two names are of one regular file, or would be of one. */
+/* True if two names belong to one regular file, or would create one. */
 static bool file_is_same(const char *a, const char *b) {
     struct stat first, second;
     bool there = stat(a, &first) == 0;
@@ -166,7 +166,7 @@ int outputs_check(const options *o, const nevh_scene *scene, const char *file) {
     outputs all;
     outputs_list(&all, o);
     int status = check_each_other(&all);
-    /* What is resumed may be the file of -o. */
+    /* The file to resume may be that of -o. */
     outputs_add_rows(&all, o, "--resume", o->resume);
     if (!status)
         status = check_inputs(&all, o, scene, file);

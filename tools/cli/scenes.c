@@ -57,9 +57,9 @@ static char *folder_beside(void) {
     return NULL;
 }
 
-/* Where scenes that are given by name are: what NEVH_SCENES in the environment
-   says, else the folder that belongs to this program (in the build tree or
-   beside bin/), else the one it was configured for. */
+/* The folder of scenes that are given by name: NEVH_SCENES of the environment, else
+   the folder that belongs to this program (in the build tree or beside bin/), else
+   the one it was configured for. */
 static const char *scenes_folder(void) {
     static char *beside;
     const char *given = getenv("NEVH_SCENES");
@@ -124,7 +124,7 @@ int scenes_missing(void) {
                        scenes_folder());
 }
 
-/* Of a name without its ending, the file here; else a scene. */
+/* The file in this folder with the ending added, else the closest name of a scene. */
 static char *suggestion(const char *name, const list *names) {
     char *file = text_print("%s%s", name, ending);
     if (is_file(file))
@@ -134,7 +134,7 @@ static char *suggestion(const char *name, const list *names) {
     return closest ? text_print("%s", closest) : NULL;
 }
 
-/* What was looked for, where, and what may have been meant. */
+/* Refuses a name, with the folders searched and the likely name. */
 static int not_found(const char *name) {
     list names = {0};
     bool path = strchr(name, '/');
@@ -249,7 +249,7 @@ int scene_number(nevh_scene *scene, const options *o, const char *formula,
                                                      : TOOL_OK;
 }
 
-/* Whether an assignment is to a coordinate, a momentum or a velocity. */
+/* True if an assignment is to a coordinate, a momentum or a velocity. */
 static bool is_start(const nevh_scene *scene, const char *assignment) {
     assignment += strspn(assignment, " ");
     if (strncmp(assignment, "p_", 2) == 0 || strncmp(assignment, "v_", 2) == 0)

@@ -183,7 +183,7 @@ static void print_wrapped(const char *text, FILE *f) {
         print_paragraph(text, 0, 2, f);
 }
 
-/* How each column is set, found once. */
+/* The layout of a column, found once. */
 typedef struct {
     size_t width;
     bool right;
@@ -361,7 +361,7 @@ static size_t character_bytes(const char *text) {
     return wrong ? 0 : count;
 }
 
-/* What is no UTF-8, as names of files may be, is shown as U+FFFD. */
+/* Replaces bytes that are not UTF-8, as names of files may have, by U+FFFD. */
 void json_string(const char *text, FILE *f) {
     fputc('"', f);
     while (*text) {

@@ -38,7 +38,8 @@ char *list_sentence(const list *, const char *last); /* "a, b or c" */
 void list_free(list *);
 void *tool_allocate(size_t count, size_t size);        /* zeros */
 void *tool_enlarge(void *, size_t count, size_t size); /* as realloc */
-/* What is not NULL, which is what the library returns where memory is out. */
+/* Returns the pointer; NULL, as the library returns for exhausted memory, ends the
+   program. */
 void *tool_owned(void *);
 /* A status of the library; where it is NEVH_ENOMEM the program ends, too: a row
    that is refused, or a value left out, would say something about the scheme. */
@@ -91,7 +92,7 @@ int tool_status(int status);
 #define nevh_stepper_status(...)  tool_status(nevh_stepper_status(__VA_ARGS__))
 #define nevh_symplecticity_defect(...)                                         \
     tool_status(nevh_symplecticity_defect(__VA_ARGS__))
-/* What is NAN where memory is out. */
+/* Returns the number; NAN for exhausted memory ends the program. */
 double tool_number(double);
 #define nevh_stability_limit(...)                                              \
     (errno = 0, tool_number(nevh_stability_limit(__VA_ARGS__)))
@@ -181,7 +182,7 @@ extern const char scene_sample[];
 
 /* options.c: the command line. */
 typedef enum { MATCH_SCENE, MATCH_STEPS, MATCH_WORK } matching;
-/* What --plot-kind names. */
+/* The names of --plot-kind. */
 #define PLOT_KINDS(X)                                                          \
     X(PHASE, "phase")                                                          \
     X(ENERGY, "energy")                                                        \
@@ -235,7 +236,7 @@ typedef struct {
         size_t starts, exponents, deviations;
         bool all; /* exponents */
     } chaos;
-    /* Of sweep. */
+    /* Options of sweep. */
     list vary; /* lines of [ensemble] */
     const char *outcomes, *picture;
     size_t threads, width;
@@ -288,7 +289,7 @@ typedef struct {
     int (*run)(const options *);
 } command;
 bool command_takes(const command *, const option_row *);
-/* That there is what `options` names; a test asks that of all commands. */
+/* Checks that the command takes the options it names; for a test of all commands. */
 int command_takes_known(const command *);
 
 /* A setting is '+' or '-' and an effect to switch on or off, or '=' or '@' and an
@@ -302,7 +303,7 @@ char *shell_line(const options *, const char *run, const char *scene);
 char *shell_word(char *line, const char *word);
 char *shell_option(char *line, const char *name, const char *value);
 char *shell_number(char *line, const char *name, double value);
-/* What --set and --start gave, a line each. */
+/* Notes the settings of --set and --start, a line each. */
 void settings_notes(const options *, list *notes);
 void options_free(options *);
 
@@ -331,7 +332,7 @@ void output_child(pid_t);
 /* A file to read, or NULL where it is none: a pipe or a device may have no end. */
 FILE *regular_open(const char *name);
 void output_leave(void (*leave)(int number));
-/* That it can be opened, as far as can be told without changing it.  To be
+/* Checks that it can be opened, as far as that is known without changing it. To be
    called while none is open. */
 int output_check(const char *name);
 /* Renames, or, unless it is to be kept, removes.  Returns `status`, or
@@ -352,8 +353,8 @@ void html_text(FILE *, const char *);
 /* FILE.npy, or for task I of N (0: there are no tasks) FILE.I-of-N.npy; to be
    freed. */
 char *output_part(const char *file, uint64_t task, uint64_t tasks);
-/* That no option writes over the file of a scene, its C code, measured points, or
-   what another option writes, whatever their names. */
+/* Checks that no option writes over the file of a scene, its C code, measured
+   points, or the output of another option, whatever their names. */
 int outputs_check(const options *, const nevh_scene *, const char *file);
 
 /* scenes.c: scenes by file or name, changed as the options say. */
@@ -372,7 +373,7 @@ int scenes_missing(void);
 void scenes_installed(list *names, list *files);
 /* The file of an installed scene, or of "hard/NAME"; NULL when there is none. */
 char *scene_file(const char *name);
-/* What --data names: a file here, or beside the installed scenes; to be freed. */
+/* The file of --data: here, or beside the installed scenes; to be freed. */
 char *data_file(const char *name);
 
 /* The live page without a scene, beside this program or where it was configured

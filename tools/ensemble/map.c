@@ -138,7 +138,7 @@ static void span(const direction *d, double *low, double *high) {
     *high = last[0] + (last[0] - last[-1]) / 2;
 }
 
-/* Of a column "NAME(...)" that is an outcome. */
+/* The unit of a column "NAME(...)" that is an outcome. */
 static nevh_outcome_unit unit_of_column(const map *m, size_t column) {
     const char *name = nevh_sweep_column(m->sweep, column);
     char *word = text_print("%.*s", (int)strcspn(name, "("), name);

@@ -7,7 +7,7 @@
 #include <nevh/sweep.h>
 
 typedef struct map map;
-/* Where --picture is given; else *made is NULL.
+/* Creates the picture of --picture; without it *made is NULL.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int map_new(map **made, const options *, const plan *, const nevh_sweep *);
 void map_free(map *); /* NULL is allowed */

@@ -5,7 +5,7 @@
 
 #include "experiment/plan.h"
 
-/* Those that have a start. */
+/* The members that have a start. */
 typedef struct {
     size_t n, count, startless;
     bool several;     /* there is an ensemble; else it is the plan's start */
@@ -17,10 +17,10 @@ typedef struct {
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int members_read(members *, const plan *);
 void members_free(members *);
-/* Those without a start are told of.  TOOL_FAILED where there are some. */
+/* Reports members without a start: TOOL_FAILED if there are some. */
 int members_tell(const members *, const plan *);
 void members_note(const members *, list *notes);
-/* Of orbits whose points of a section lie on several surfaces of energy. */
+/* Notes that points of a section lie on several surfaces of energy. */
 void members_note_energies(const members *, const plan *, list *notes);
 
 #endif

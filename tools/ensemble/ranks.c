@@ -19,7 +19,7 @@ static size_t number_in(const char *name) {
     return text ? strtoul(text, NULL, 10) : 0;
 }
 
-/* How many processes mpirun, or srun with PMI, started; 0: it is unknown. */
+/* The number of processes that mpirun, or srun with PMI, started; 0: unknown. */
 static size_t launched(void) {
     static const char *const names[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE",
                                         "MV2_COMM_WORLD_SIZE"};

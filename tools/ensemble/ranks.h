@@ -10,7 +10,7 @@
 
 #include "store.h"
 
-/* What of MPI is used. */
+/* The functions of MPI in use. */
 typedef struct {
     /* rank, ranks, and those of this machine */
     bool (*begin)(size_t *rank, size_t *count, size_t *local);
@@ -34,8 +34,8 @@ typedef struct {
     int stderr_kept;    /* a rank above 0 is silent while all do the same */
 } ranks;
 
-/* Where mpirun started several processes for a sweep, nevh-mpi takes the place
-   of this one, if it is there. */
+/* Replaces this process by nevh-mpi, if it is there, when mpirun started several
+   for a sweep. */
 void ranks_exec(char *argv[]);
 /* All return TOOL_OK or, with a message, TOOL_USAGE. */
 int ranks_begin(ranks *, const options *, bool array);

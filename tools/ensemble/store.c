@@ -160,7 +160,7 @@ static int check_side(const store *s) {
     return status;
 }
 
-/* That a file has this store's header and length. */
+/* Checks that a file has this store's header and length. */
 static int check_file(store *s) {
     struct stat found;
     char *header = store_header(s), *there = tool_allocate(s->header, 1);
@@ -207,7 +207,7 @@ uint64_t store_next(const store *s, uint64_t i) {
     return store_skip_hole(s->file, s->header, s->record, i, s->count);
 }
 
-/* Whether some of so many records are done and some are not. */
+/* True if some of the records are done and some are not. */
 static bool is_begun(int file, uint64_t header, size_t record, uint64_t count) {
     store_block b = {.bytes = NULL};
     bool done = false, missing = false;
@@ -312,7 +312,7 @@ int store_attach(store *s, const char *name) {
     return check_side(s) || check_file(s) ? TOOL_USAGE : TOOL_OK;
 }
 
-/* What cannot be read is missing. */
+/* Reads a member; one that cannot be read counts as missing. */
 nevh_member_status store_read(store *s, uint64_t member, double values[]) {
     uint64_t i = member - s->first;
     store_block *b = &s->block;
@@ -343,7 +343,7 @@ static int add_reason(store *s, const nevh_sweep_result *r) {
     return status;
 }
 
-/* What was read before is as it is now. */
+/* Updates the block that was read before. */
 static void refresh_block(store *s, uint64_t i) {
     store_block *b = &s->block;
     pthread_mutex_lock(&b->lock);

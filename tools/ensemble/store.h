@@ -43,7 +43,7 @@ typedef struct {
 /* Fills in what follows from the rest; all return TOOL_OK or, with a message,
    TOOL_USAGE. */
 int store_create(store *, const char *name);
-/* What was there before gives way to what was created. */
+/* Replaces an earlier file by the one created. */
 int store_settle(store *);
 /* Opens a file that was left, whose settings must be the same. */
 int store_resume(store *, const char *name);

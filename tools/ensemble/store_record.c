@@ -89,8 +89,8 @@ static uint64_t bits_of(double number) {
     return bits;
 }
 
-/* Of member, status and values; its 7 bytes are not all 0, as they are in records of
-   versions that wrote none. */
+/* Digest of member, status and values; its 7 bytes are not all 0, as they are in
+   records of versions that wrote none. */
 static uint64_t digest_of(const store *s, const unsigned char record[],
                           uint64_t member) {
     unsigned char number[8];

@@ -21,7 +21,7 @@ static double seconds(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* How members are run. */
+/* Running members. */
 
 static int make_sweep(sweep_job *j) {
     plan *p = &j->plan;
@@ -239,7 +239,7 @@ static int run(sweep_job *j) {
                                                                    : status;
 }
 
-/* What belongs together. */
+/* Checks options that depend on each other. */
 static int check_options(const options *o) {
     if (option_given(o, "format") && o->format != FORMAT_CSV)
         return tool_refuse(

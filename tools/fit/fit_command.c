@@ -44,7 +44,7 @@ static void keep_steps(job *j) {
     p->native = NEVH_NATIVE_NEVER;
 }
 
-/* Of the data about the mean of each column, in units of their deviations. */
+/* Spread of the data about the mean of each column, in units of their deviations. */
 static double spread_of(const fitting *f) {
     const measured *m = f->data;
     double sum = 0;
@@ -279,7 +279,7 @@ static void add_next(const job *j, const options *o, list *words) {
     free(line);
 }
 
-/* Where the errors are from. */
+/* The origin of the errors, in words. */
 static char *tell_errors(const job *j) {
     if (sigma_known(j))
         return text_print("%s", "");

@@ -83,8 +83,8 @@ void fit_explain(const gsl_matrix *jacobian, gsl_vector *d, gsl_matrix *c,
     gsl_vector_free(slope);
 }
 
-/* Whether the step of Gauss and Newton lowers the squares by rounding alone: GSL's
-   driver fails where the first values are the minimum. */
+/* True if a step of Gauss and Newton lowers the squares by rounding alone: GSL's
+   driver fails if the first values are the minimum. */
 static bool at_minimum(const fitting *f,
                        const gsl_multifit_nlinear_workspace *w) {
     static const double part = 1e-5;

@@ -14,7 +14,7 @@ static bool is_start(const plan *p, const char *name) {
     return false;
 }
 
-/* What the scene says, whose run settings are others after each assignment. */
+/* Reads the first value from the scene; assignments may change its run settings. */
 static int first_value(fitting *f, varied *v, const options *o) {
     plan *p = f->plan;
     double t = nevh_scene_run_settings(p->scene)->t_start;

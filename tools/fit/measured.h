@@ -26,13 +26,13 @@ typedef struct {
    returns  TOOL_OK, or TOOL_USAGE with the message printed, which names line and
             column */
 int measured_read(measured *, const plan *, const options *, const char *only);
-/* Those of other names, without t. */
+/* As measured_read, for columns of other names, without t. */
 int measured_read_named(measured *, const plan *, const options *,
                         const list *names);
 void measured_free(measured *);
 /* The number of a column; `columns` where there is none of that name. */
 size_t measured_find(const measured *, const char *name);
-/* What is measured less `model`; of an angle the smallest of all turns. */
+/* The measured value less `model`; for an angle the smallest of all turns. */
 double measured_residual(const measured *, size_t point, size_t column,
                          double model);
 /* The plan ends at the last of the points, those of --t-end left out. */
