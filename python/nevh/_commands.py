@@ -18,7 +18,7 @@ import tempfile
 import warnings
 from typing import Any
 
-from ._library import _closest, Error, Failed, gradient_names, _lib, Refused, _trees
+from ._library import _closest, Error, Failed, gradient_names, _lib, _name_list, Refused, _text, _trees
 from ._scene import _assign, _is_row, Scene, _scene, _starts, _value
 from ._table import Table, Text
 
@@ -270,6 +270,7 @@ def _words(of, given, folder):
     more = given.pop("options", ())
     if isinstance(more, str):
         raise TypeError("options is a list of texts, not the text %r" % more)
+    more = _name_list("options", more)
     words, operands, names = [], [], []
     coordinates = given.pop("coordinates", None)
     if operand and operand.startswith("SCENE"):
@@ -287,7 +288,9 @@ def _words(of, given, folder):
     else:
         name = operand.lower() if operand else "case"
         if name in given:
-            operands = [os.fspath(given.pop(name))]
+            operands = [_text(name, os.fspath(given[name]) if isinstance(
+                given[name], os.PathLike) else given[name])]
+            del given[name]
         if "parameters" in given:
             words += [part for item in given.pop("parameters").items()
                       for part in ("--set", _assign(*item))]

@@ -10,7 +10,7 @@ import ctypes as c
 import math
 
 from ._library import _lib, Refused
-from ._arrays import np, _numbers, _table
+from ._arrays import np, _numbers, _real, _table
 
 
 class DenseOutput:
@@ -79,7 +79,8 @@ class Events:
         return bool(self.functions)
 
     def value(self, k, t, y):
-        got = float(self.functions[k](t, np.array(y) if np is not None else y, *self.args))
+        got = _real("event %d at t = %g" % (k, t), self.functions[k](
+            t, np.array(y) if np is not None else y, *self.args))
         if math.isnan(got):
             raise Refused("event %d is nan at t = %g" % (k, t))
         return got

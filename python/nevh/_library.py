@@ -246,10 +246,28 @@ def _text(what, value):
     return value
 
 
+def _mapping(what, value):
+    """{name: value}, or an empty one for None."""
+    if value is None:
+        return {}
+    if not hasattr(value, "items"):
+        raise TypeError("%s is {name: value}, not %.80r" % (what, value))
+    return value
+
+
+def _name_list(what, value):
+    """Names: one, or several in a list or tuple; none for None."""
+    if value is None or isinstance(value, str):
+        return [] if value is None else [value]
+    if not isinstance(value, (list, tuple, set, frozenset)):
+        raise TypeError("%s is a name, or a list of names, not %.80r" % (what, value))
+    return [_text("one of %s" % what, name) for name in value]
+
+
 def _closest(name, names):
     """The words (did you mean NAME?), or none."""
     folded = {known.lower(): known for known in names}
-    close = difflib.get_close_matches(name.lower(), folded, 1)
+    close = difflib.get_close_matches(name.lower(), folded, 1, 0.65)
     return " (did you mean %s?)" % folded[close[0]] if close else ""
 
 

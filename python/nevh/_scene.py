@@ -11,7 +11,7 @@ import os
 import re
 from typing import Any, Callable, Mapping, Sequence
 
-from ._library import _check, _closest, _INVALID, _lib, Refused, _text, _trees
+from ._library import _check, _closest, _INVALID, _lib, _mapping, _name_list, Refused, _text, _trees
 from ._arrays import _numbers, _real
 
 
@@ -58,12 +58,12 @@ def _is_scene_text(text):
 def _scene_text(title, coordinates, effects, parameters=None, definitions=None):
     """The text of a scene of these effects, {name: formula}, without a start."""
     lines = ["[scene]", "title = " + title, "[parameters]"]
-    for name, value in (parameters or {}).items():
+    for name, value in _mapping("parameters", parameters).items():
         if _is_row(value):
             name = "%s[1..%d]" % (name, len(value))
         lines.append(_assign(name, value))
     lines.append("[coordinates]")
-    for name in coordinates:
+    for name in _name_list("coordinates", coordinates):
         lines.append(re.sub(r"\[(\w+)\]", r"[i = 1..\1]", name) + " = 0")
     for section, formulas in (("definitions", definitions), ("effects", effects)):
         if formulas:
@@ -154,6 +154,9 @@ class Scene:
         if definitions and effects is None:
             raise TypeError("definitions go with effects")
         if effects is not None:
+            effects = {name: _text("a formula", formula) for name, formula in
+                       _mapping("effects", effects).items()}
+            definitions = _mapping("definitions", definitions)
             coordinates = coordinates or _coordinates_of(" ".join(effects.values()))
             self.is_formula = True
             self._made = _lib.scene_parse(b"scene", _scene_text(
@@ -163,8 +166,8 @@ class Scene:
         else:
             self._read(source, parameters, coordinates, y0)
         for option, names in (("with", with_effects), ("without", without_effects)):
-            for name in [names] if isinstance(names, str) else names:
-                self._changes += ["--" + option, _text("an effect", name)]
+            for name in _name_list(option + "_effects", names):
+                self._changes += ["--" + option, name]
                 self._check(_lib.scene_enable(self._made, name.encode(),
                                               option == "with"))
 
@@ -192,7 +195,7 @@ class Scene:
             self._made = _lib.scene_parse(b"H", text.encode())
         self._check(_lib.scene_status(self._made))
         if not self.is_formula:
-            self._set(parameters or {})
+            self._set(_mapping("parameters", parameters))
 
     def _set(self, parameters):
         for name, value in parameters.items():

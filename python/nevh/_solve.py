@@ -15,7 +15,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Callable, Mapping, Sequence
 
 from ._library import (_check, _gradient, _integrator, _JudgedRun, _lib,
-                       _observe_fn, _Observer, _Options, Refused, _STOPPED, verdicts)
+                       _observe_fn, _Observer, _Options, Refused, _STOPPED, _text, verdicts)
 from ._arrays import _cut, np, _numbers, _positive, _real, Result, _table, _whole_from_one
 from ._scene import Scene
 from ._functions import _Subject
@@ -31,7 +31,7 @@ def _set_gradient_steps(o, scene, given, n, what):
         o.gradient_steps = settings.gradient_steps
         return None
     if not hasattr(given, "__len__"):
-        o.gradient_step = given or 0
+        o.gradient_step = 0 if given is None else _real(what, given)
         return None
     steps, o.gradient_steps = _numbers(given, what)
     if len(steps) != 2 * n:
@@ -335,7 +335,11 @@ def _solve_members(H, t_span, y0, given):
     """The orbits of an ensemble: y has the shape (2n, members, times)."""
     if np is None:
         raise ImportError("an ensemble needs NumPy; nevh.sweep gives outcomes of many")
-    y0 = np.asarray(y0, float)
+    try:
+        y0 = np.asarray(y0, float)
+    except (TypeError, ValueError):
+        raise Refused("y0 takes real numbers, 2n or (2n, members), not %.80r"
+                      % (y0,)) from None
     if given["events"] is not None or given["dense_output"]:
         raise Refused("events and dense_output are of one orbit: y0 has the shape %s"
                       % (y0.shape,))
@@ -423,6 +427,8 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
         given = dict(locals())
         del given["H"], given["t_span"], given["y0"]
         return _solve_members(H, t_span, y0, given)
+    if method is not None and not isinstance(method, type):
+        _text("method", method)
     start, found = None, Events(events, args)
     if hasattr(H, "_problem"):  # a HGrad
         H, gradient, gradient_step, given = H._problem(gradient, gradient_step)
@@ -454,7 +460,7 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
         settings = scene._settings()
         if method is None and settings.integrators:
             method = settings.integrator[0].decode()
-        adapts = method and _lib.integrator_adaptive(_integrator(method)[0])
+        adapts = method is not None and _lib.integrator_adaptive(_integrator(method)[0])
         if dt is None and settings.dts and not adapts:
             dt = settings.dt[0]
         if (rtol is None and settings.tolerances and adapts and
@@ -464,7 +470,7 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
     if not t_end - t0 < float("inf") or t_end == t0:
         raise Refused("t_span = %g, %g is no time to go" % (t0, t_end))
     dt = None if dt is None else _positive("dt", dt)
-    methods = [method] if method else _choose(subject, dt, t0, y)
+    methods = [method] if method is not None else _choose(subject, dt, t0, y)
     dt, tolerance = _steps(methods[0], dt, rtol, atol, t_end - t0, y[0])
     if max_step is not None and dt > _positive("max_step", max_step):
         if not tolerance:
