@@ -325,7 +325,7 @@ def test_arguments_are_named_where_they_are_wrong():
             (refused, "there is no value for g", of(parameters={"g": []})),
             (refused, "no scene 'pendulumm' (did you mean pendulum?)",
              of("pendulumm")),
-            (TypeError, "an effect is a text", of("pendulum", without_effects=[3])),
+            (TypeError, "one of without_effects is a text", of("pendulum", without_effects=[3])),
             (refused, "neither effects", of(value, without_effects=["gravity"])),
             (TypeError, "H = True is a number", of(True)),
             (TypeError, "H = 12345 is a number", of(12345)),
