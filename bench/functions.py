@@ -208,7 +208,7 @@ def one_pendulum(t, y, g):
 
 
 def sweep(rounds):
-    angles = np.linspace(0.1, 3, 100000)
+    angles = "range(0.1, 3, 100000)"
     text = """[parameters]
 g = 9.8
 [coordinates]

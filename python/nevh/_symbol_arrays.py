@@ -40,7 +40,7 @@ _ELEMENTS = {
     "mod": operator.mod, "floor_divide": operator.floordiv, "power": operator.pow,
     "less": operator.lt, "less_equal": operator.le, "greater": operator.gt,
     "greater_equal": operator.ge, "equal": operator.eq, "not_equal": operator.ne,
-    "conjugate": lambda x: x, "square": lambda x: x * x, "reciprocal": lambda x: 1 / x,
+    "divmod": divmod, "conjugate": lambda x: x, "square": lambda x: x * x, "reciprocal": lambda x: 1 / x,
     "maximum": extreme("max"), "minimum": extreme("min"), "fmax": extreme("max"),
     "fmin": extreme("min"),
     "logaddexp": lambda a, b: np.log(np.exp(a) + np.exp(b)),
@@ -400,6 +400,35 @@ for _function in list(OWN):
     SUBSTITUTES[_function] = _substitute(OWN[_function], _function)
 
 
+def elementwise(function):
+    """A function of numbers for arrays, as numpy.vectorize has it."""
+    def call(*of):
+        return made(np.frompyfunc(function, len(of), 1)(*map(_objects, of)))
+    return call
+
+
+class _UfuncTwin:
+    """A ufunc that takes lists of symbols, too."""
+
+    def __init__(self, ufunc):
+        self._ufunc = ufunc
+
+    def __call__(self, *of, **named):
+        return self._ufunc(*(symbols(x) if isinstance(x, (list, tuple)) and
+                             has_symbol(x) else x for x in of), **named)
+
+    def __getattr__(self, name):
+        return getattr(self._ufunc, name)
+
+
+def substitute(x):
+    """What stands for a function of NumPy while a function is traced, or None."""
+    try:
+        return _UfuncTwin(x) if isinstance(x, np.ufunc) else SUBSTITUTES.get(x)
+    except TypeError:
+        return None
+
+
 class NumpyTwin(types.ModuleType):
     """The module numpy, or one of its parts, with these functions."""
 
@@ -411,7 +440,4 @@ class NumpyTwin(types.ModuleType):
         value = getattr(self._module, name)
         if isinstance(value, types.ModuleType) and value.__name__.startswith("numpy"):
             return NumpyTwin(value)
-        try:
-            return SUBSTITUTES.get(value, value)
-        except TypeError:
-            return value
+        return substitute(value) or value

@@ -24,7 +24,7 @@ except ImportError:
     np = None
 
 _CHECKS = 16
-_CHECKED_OPERATIONS = 400000  # of all checks together
+_CHECKED_OPERATIONS = 150000  # of all checks together
 _FEWEST = 3  # points where the function has to have a value
 
 
@@ -217,14 +217,10 @@ class _Trace:
     def check(self, graph, root):
         """Fails where the function and its graph differ by more than rounding."""
         needed = graph.below([root])
-        count = max(6, min(_CHECKS, _CHECKED_OPERATIONS // (1 + len(needed))))
+        count = max(4, min(_CHECKS, _CHECKED_OPERATIONS // (1 + len(needed))))
         compared = 0
         for t, y, parameters in self.points(count):
-            try:
-                with _quiet():
-                    known = as_number(self.calls.with_values(parameters)(t, array(y)))
-            except Exception:
-                continue
+            known = self.value(t, y, parameters)
             if not math.isfinite(known):
                 continue
             value = graph.values(needed, t, y, parameters)
@@ -237,14 +233,18 @@ class _Trace:
             raise Untraceable("it has a value at %d of %d states near the start"
                               % (compared, count), self.definition())
 
+    def value(self, t, y, parameters):
+        """What the function gives, NaN where it raises an exception."""
+        try:
+            with _quiet():
+                return as_number(self.calls.with_values(parameters)(t, array(y)))
+        except Exception:
+            return math.nan
+
     def differs(self, t, y, parameters, known, value):
         """Untraceable, with the place where the reason is."""
         call = self.calls.with_values(parameters)
-        try:
-            with _quiet():
-                again = as_number(call(t, array(y)))
-        except Exception:
-            again = math.nan
+        again = self.value(t, y, parameters)
         if again != known:
             return Untraceable("two calls with the same arguments give %r and %r"
                                % (known, again), self.definition())

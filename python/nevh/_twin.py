@@ -12,6 +12,7 @@ caches that the function keeps in globals or objects are those of the copy.
 SPDX-License-Identifier: GPL-3.0-or-later
 """
 
+import abc
 import builtins
 import functools
 import math
@@ -25,6 +26,7 @@ try:
 except ImportError:
     np = None
 
+_HEAP = 1 << 9  # Py_TPFLAGS_HEAPTYPE: a class that is written in Python
 _PLAIN = (int, float, complex, str, bytes, bool, type(None))
 _MATH = {}
 for _name in dir(math):
@@ -113,8 +115,8 @@ class Twins:
 
     def _library(self, x):
         if np is not None:
-            from ._symbol_arrays import SUBSTITUTES
-            return SUBSTITUTES.get(x) or _MATH.get(x) or _BUILTINS.get(x)
+            from ._symbol_arrays import substitute
+            return substitute(x) or _MATH.get(x) or _BUILTINS.get(x)
         return _MATH.get(x) or _BUILTINS.get(x)
 
     def _module(self, x):
@@ -166,30 +168,36 @@ class Twins:
     def _class(self, x):
         if not _is_users(x):
             return x
-        twin = type(x.__name__, tuple(map(self.of, x.__bases__)), {
-            name: value for name, value in vars(x).items()
-            if name not in ("__dict__", "__weakref__")})
+        own = {name: value for name, value in vars(x).items() if name not in
+               ("__dict__", "__weakref__", "__slots__") and
+               not isinstance(value, types.MemberDescriptorType)}
+        twin = type(x)(x.__name__, tuple(map(self.of, x.__bases__)), own)
         self.known[id(x)] = twin
-        for name, value in vars(x).items():
+        for name, value in own.items():
             if isinstance(value, (staticmethod, classmethod)):
                 value = type(value)(self.of(value.__func__))
             elif isinstance(value, property):
                 value = property(*(f and self.of(f) for f in (
                     value.fget, value.fset, value.fdel)))
-            elif not isinstance(value, types.FunctionType):
-                continue
-            else:
+            elif isinstance(value, types.FunctionType):
                 value = self.of(value)
+            else:
+                continue
             setattr(twin, name, value)
         return twin
 
     def _instance(self, x):
         kind = self.of(type(x))
-        if kind is type(x) or not hasattr(x, "__dict__"):
+        if kind is type(x):
             return x
         twin = object.__new__(kind)
         self.known[id(x)] = twin
-        twin.__dict__.update((name, self.of(value)) for name, value in vars(x).items())
+        names = set(getattr(x, "__dict__", ()))
+        for base in type(x).__mro__:
+            names.update(name for name, value in vars(base).items()
+                         if isinstance(value, types.MemberDescriptorType))
+        twin.__dict__.update((name, self.of(getattr(x, name))) for name in names
+                             if hasattr(x, name))
         return twin
 
     def _container(self, x):
@@ -202,9 +210,8 @@ class Twins:
         return type(x)(map(self.of, x))
 
     def _vectorized(self, x):
-        from ._symbol_arrays import made
-        twin = self.of(x.pyfunc)
-        return lambda *of: made(np.frompyfunc(twin, len(of), 1)(*of))
+        from ._symbol_arrays import elementwise
+        return elementwise(self.of(x.pyfunc))
 
 
 def _names(code):
@@ -218,11 +225,9 @@ def _names(code):
 
 def _is_users(kind):
     """Whether a class is written in Python, by the user, and can be copied."""
-    if type(kind) is not type or issubclass(kind, (tuple, BaseException)) or any(
-            "__slots__" in vars(base) for base in kind.__mro__):
-        return False
-    if not all(base is object or type(base) is type and base.__flags__ & 512
-               for base in kind.__mro__):
+    if issubclass(kind, (tuple, BaseException)) or not all(
+            base is object or base is abc.ABC or base.__flags__ & _HEAP and
+            type(base) in (type, abc.ABCMeta) for base in kind.__mro__):
         return False
     file = getattr(sys.modules.get(kind.__module__), "__file__", None)
     return not (file and is_foreign(file))

@@ -4,6 +4,7 @@ NumPy those that need it are skipped.
 SPDX-License-Identifier: GPL-3.0-or-later
 """
 
+import abc
 import functools
 import math
 import os
@@ -195,6 +196,108 @@ def test_signatures():
                      (decorated(default), {}),
                      (lambda t, y: y[1]**2 / 2 + y[0]**2, {})):
         assert close(last(orbit_of(H, **named)), known, 1e-12), H
+
+
+class Slots:
+    __slots__ = ("m",)
+
+    def __init__(self):
+        self.m = 2.0
+
+    def potential(self, x):
+        return self.m * math.cos(x)
+
+
+class Abstract(abc.ABC):
+    strength = 2.0
+
+    @abc.abstractmethod
+    def potential(self, x):
+        """What is to be written."""
+
+    @staticmethod
+    def kinetic(p):
+        return sum(x * x for x in p) / 2
+
+    @classmethod
+    def factor(cls):
+        return cls.strength
+
+    def __call__(self, t, y):
+        return self.kinetic(y[1:]) + self.factor() * self.potential(y[0])
+
+
+class Concrete(Abstract):
+    def potential(self, x):
+        return math.cos(x)
+
+
+def recursive(x, n):
+    return x if n == 0 else math.sin(recursive(x, n - 1)) + x
+
+
+def test_kinds_of_code():
+    slots, functions = Slots(), {"a": lambda x: x**2, "b": [math.sin, math.cos]}
+
+    def with_slots(t, y):
+        return y[1]**2 / 2 + slots.potential(y[0])
+
+    def with_containers(t, y):
+        return y[1]**2 / 2 + functions["a"](y[0]) + sum(f(y[0]) for f in functions["b"])
+
+    def with_imports(t, y):
+        import math
+        from math import sqrt as root
+        return y[1]**2 / 2 + math.sin(y[0]) + root(1 + y[0]**2) + float(abs(y[0]))
+
+    def with_numbers(t, y):
+        whole, rest = divmod(y[0], 1.0)
+        return y[1]**2 / 2 + rest**2 + max(y[0], 0.1, 0.2) + pow(y[0], 3) + y[0] % 2.5
+
+    def with_state(t, y):
+        count = 0
+
+        def power(x):
+            nonlocal count
+            count += 1
+            return x**count
+        return y[1]**2 / 2 + power(y[0]) + power(y[0]) + recursive(y[0], 3)
+    for H in (with_slots, Concrete(), with_containers, with_imports, with_numbers,
+              with_state):
+        assert orbit_of(H).gradient == "exact"
+
+
+def test_kinds_of_arrays():
+    needs_numpy()
+    tanh = np.vectorize(lambda x: math.tanh(x))
+
+    def vectorized(t, y):
+        return y[2:] @ y[2:] / 2 + tanh(y[:2]).sum()
+
+    def lists(t, y):
+        mixed = [y[0], 2.0]
+        return (np.cos(mixed).sum() + np.prod(mixed) + y[2:] @ y[2:] / 2
+                + np.sum(np.sqrt(np.array([y[1], 1.0])**2 + 1)))
+
+    def filled(t, y):
+        M, total = np.eye(2), np.zeros(1)
+        M[0, 1] = M[1, 0] = 0.1 * y[0]
+        total += y[2:] @ np.linalg.inv(M + np.eye(2)) @ y[2:]
+        return total + np.linalg.det(M)
+
+    def pairs(t, y):
+        x = y[:2]
+        apart = np.sqrt((x[:, None] - x[None, :])**2 + np.eye(2))
+        others = ~np.eye(2, dtype=bool)
+        return np.dot(y[2:], y[2:]) / 2 - np.sum(1 / apart[others]) / 2
+
+    def selected(t, y):
+        x = np.asarray(y, dtype=float)[[0, 1]]
+        return (np.where(np.arange(2) > 0, x, 0).sum() + x.max() + np.clip(x, -1, 1).sum()
+                + np.outer(x, x).trace() + np.polyval([1, 2, 3.0], x[0])
+                + np.linalg.norm(y[2:])**2)
+    for H in (vectorized, lists, filled, pairs, selected):
+        assert "[effects]" in scene_text(H, [0.3, 0.8, 0.1, 0.4]), H
 
 
 def test_parameters_stay_parameters():
