@@ -2,6 +2,13 @@ libnevh_core_la_SOURCES += \
 	integrators/integrator.c \
 	integrators/schemes_private.h \
 	integrators/schemes.c \
+	integrators/kernels/order_private.h \
+	integrators/kernels/order_words.c \
+	integrators/kernels/order_trees.c \
+	integrators/kernels/scheme_table_private.h \
+	integrators/kernels/scheme_numbers.c \
+	integrators/kernels/scheme_facts.c \
+	integrators/kernels/scheme_table.c \
 	integrators/kernels/splitting_private.h \
 	integrators/kernels/splitting_step.h \
 	integrators/kernels/splitting_expand.c \

@@ -285,6 +285,7 @@ libnevh_core_la_SOURCES = \
 	lib/scene/elements_text.h \
 	lib/scene/scene_friction.c \
 	lib/scene/scene_run.c \
+	lib/scene/scene_integrators.c \
 	lib/scene/velocity.c \
 	lib/scene/momenta.c \
 	lib/scene/start.c \

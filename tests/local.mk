@@ -38,6 +38,7 @@ suites = \
 	tests/scene/check_scene_shown \
 	tests/scene/check_velocities tests/scene/check_elements \
 	tests/scene/check_equation \
+	tests/scene/check_scene_integrators \
 	tests/scheme/check_registry \
 	tests/scheme/check_coefficients \
 	tests/system/check_masses \
@@ -117,6 +118,7 @@ tests_native_check_native_LDADD = $(INSIDE_LIBS)
 tests_native_check_native_cache_LDADD = $(INSIDE_LIBS)
 tests_native_check_compilers_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_splitting_LDADD = $(INSIDE_LIBS)
+tests_scheme_check_trees_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_damped_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_brouwer_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_implicit_LDADD = $(INSIDE_LIBS)

@@ -197,6 +197,67 @@ NEVH_API extern const nevh_kernel nevh_lobatto_kernel;
 /* The implicit Euler method: 1 stage; no table. */
 NEVH_API extern const nevh_kernel nevh_implicit_euler_kernel;
 
+/* A scheme from numbers: a splitting (kick and drift), a Runge-Kutta method (a and
+   b), or a composition of steps of another scheme (base and step).  What belongs to
+   the others is 0.  Weights are long doubles, so that sums that are 1 are so. */
+typedef struct {
+    const char *name; /* letters, digits, "-" and "_", at most 60 */
+    nevh_operation first;
+    size_t kicks, drifts;            /* alike, or one more of the first */
+    const long double *kick, *drift; /* each adds up to 1 */
+    size_t stages;                   /* at most NEVH_MOST_STAGES */
+    const long double *a; /* stages x stages, row by row; where it is not
+                                        strictly lower triangular the method is implicit,
+                                        and no b[i] may be 0 */
+    const long double *b; /* stages; adds up to 1 */
+    const long double *c; /* stages: the sums of a's rows; NULL: they are */
+    const nevh_integrator *base; /* a splitting, or a Runge-Kutta method */
+    size_t steps;
+    const long double *step; /* parts of h, of either sign; adds up to 1 */
+} nevh_scheme_table;
+enum { NEVH_MOST_STAGES = 64 };
+
+/* The first fault of a table. */
+typedef struct {
+    int status; /* NEVH_EINVAL or NEVH_ENOMEM */
+    char list;  /* the first letter of kick, drift, a, b, c or step; 0: none */
+    size_t index; /* an element of that list, a row of a; SIZE_MAX: all of it */
+    char text[200];
+} nevh_table_error;
+
+/* Makes a scheme, whose order, symmetry and symplecticity follow from the table.
+   returns  the scheme, to be freed with nevh_integrator_free when no stepper has
+            it any more; NULL where weights do not add up to 1, rows of a not to c,
+            a number is not finite or a size is wrong: `error` (NULL-able) says what
+   table    copied, with the table of its base
+   threads  any number at once; the scheme never changes
+   cost     the conditions of orders up to 8: some milliseconds */
+NEVH_API nevh_integrator *nevh_integrator_new(const nevh_scheme_table *,
+                                              nevh_table_error *error);
+NEVH_API void nevh_integrator_free(nevh_integrator *); /* NULL is allowed */
+
+/* Properties of a splitting or a Runge-Kutta method that follow from its table by
+   algebra. */
+enum { NEVH_MOST_ORDER = 8 };
+typedef struct {
+    int order;       /* whose conditions hold but for rounding; at most
+                        NEVH_MOST_ORDER */
+    int any_kinetic; /* the same for H = T(p) + V(q) whose T is not quadratic in p */
+    bool symmetric, symplectic;
+    /* The first condition that fails: its sum, what it has to be, and for which
+       order; "", NAN and 0 where NEVH_MOST_ORDER is reached. */
+    char condition[120];
+    long double value, due;
+    int needed_for;
+} nevh_scheme_facts;
+/* returns  NEVH_OK; NEVH_EINVAL for schemes of other families; NEVH_ENOMEM */
+NEVH_API int nevh_integrator_facts(const nevh_integrator *,
+                                   nevh_scheme_facts *);
+/* "sum of b_i c_i is 0.49, 1/2 is needed for order 2 ...", with by how much it is off
+   where that is little; "" where no condition fails.  Returns text. */
+NEVH_API const char *nevh_scheme_shortfall(const nevh_scheme_facts *,
+                                           char text[], size_t size);
+
 #ifdef __cplusplus
 }
 #endif

@@ -3,7 +3,8 @@
 
    A scene is a text file (UTF-8) of sections [scene], [parameters],
    [coordinates], [definitions], [effects], [friction], [invariants],
-   [observables], [picture], [sections], [labels], [ensemble], [run], each with lines
+   [observables], [picture], [sections], [labels], [ensemble], [run] and
+   [integrator NAME], each with lines
    KEY = VALUE; # begins a comment.  [coordinates] and [effects]
    are required.
    All formulas are checked when the scene is read, also those that only some
@@ -16,6 +17,7 @@
 
 #include <nevh/certain.h>
 #include <nevh/gradient.h>
+#include <nevh/integrator.h>
 #include <stdint.h>
 
 #ifdef __cplusplus
@@ -177,6 +179,13 @@ typedef struct {
 } nevh_scene_run;
 /* Valid as long as the system; NULL when the scene was not read. */
 NEVH_API const nevh_scene_run *nevh_scene_run_settings(nevh_scene *);
+/* The schemes of [integrator NAME], in their order.  Valid as long as the system;
+   NULL: there are no more. */
+NEVH_API const nevh_integrator *nevh_scene_integrator(const nevh_scene *,
+                                                      size_t i);
+/* One of these by its name, else as nevh_integrator_named. */
+NEVH_API const nevh_integrator *nevh_scene_integrator_named(const nevh_scene *,
+                                                            const char *name);
 /* s(q, p) of the transform as a system; NULL if there is none. */
 NEVH_API const nevh_system *nevh_scene_transform(nevh_scene *);
 /* Another transform than that of the scene, if it has one.

@@ -227,14 +227,15 @@ static bool plan_solver(nevh_work *w, family_plan *g) {
 
 nevh__tableau *nevh__stage_tableau_new(const nevh_integrator *scheme) {
     size_t stages = (size_t)scheme->stages;
-    return scheme->kernel == &nevh_gauss_kernel ? nevh__gauss_new(stages)
+    return scheme->kernel == &nevh__implicit_kernel
+               ? nevh__implicit_new(scheme->table)
+           : scheme->kernel == &nevh_gauss_kernel ? nevh__gauss_new(stages)
            : scheme->kernel == &nevh_lobatto_kernel
                ? nevh__lobatto_new(stages)
                : nevh__implicit_euler_new(stages);
 }
 
-static int plan_on(nevh_work *w, size_t fewest, size_t most,
-                   nevh__tableau *(*make)(size_t stages)) {
+static int plan_on(nevh_work *w, size_t fewest, size_t most) {
     size_t stages = (size_t)w->integrator->stages;
     if (stages < fewest || stages > most)
         return nevh_work_fail(w, NEVH_EINVAL,
@@ -245,7 +246,7 @@ static int plan_on(nevh_work *w, size_t fewest, size_t most,
         return status;
     family_plan *g = w->plan = nevh__array(1, sizeof *g);
     if (g)
-        g->tableau = make(stages);
+        g->tableau = nevh__stage_tableau_new(w->integrator);
     if (!g || !plan_solver(w, g))
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     w->memory_rows = 2 * w->n + g->tableau->steps * g->unknown + 3;
@@ -254,15 +255,15 @@ static int plan_on(nevh_work *w, size_t fewest, size_t most,
 }
 
 static int plan_gauss(nevh_work *w) {
-    return plan_on(w, 1, NEVH__MOST_STAGES, nevh__gauss_new);
+    return plan_on(w, 1, NEVH__MOST_STAGES);
 }
 
 static int plan_lobatto(nevh_work *w) {
-    return plan_on(w, 2, NEVH__MOST_STAGES, nevh__lobatto_new);
+    return plan_on(w, 2, NEVH__MOST_STAGES);
 }
 
 static int plan_implicit_euler(nevh_work *w) {
-    return plan_on(w, 1, 1, nevh__implicit_euler_new);
+    return plan_on(w, 1, 1);
 }
 
 /* The evaluations that moved the state: one a stage. */
@@ -362,3 +363,7 @@ const nevh_kernel nevh_implicit_euler_kernel = {.plan = plan_implicit_euler,
                                                 .clear = clear,
                                                 .apply_friction =
                                                     apply_friction};
+const nevh_kernel nevh__implicit_kernel = {.plan = plan_gauss,
+                                           .step = step,
+                                           .clear = clear,
+                                           .apply_friction = apply_friction};

@@ -20,8 +20,17 @@ static long double weight(const nevh_splitting *table, size_t i) {
     return ((i ? given[i / 2 - 1] : 0) + given[i / 2]) / 2;
 }
 
-/* In long double; rounded once. */
-void nevh__splitting_expand(const nevh_splitting *table, double weights[]) {
+/* To one of the two. */
+static void put(long double weight, size_t i, double rounded[],
+                long double wide[]) {
+    if (rounded)
+        rounded[i] = (double)weight;
+    else
+        wide[i] = weight;
+}
+
+static void expand(const nevh_splitting *table, double rounded[],
+                   long double wide[]) {
     size_t count = nevh__splitting_operations(table);
     bool mirrored = table->pattern != NEVH_LISTED;
     size_t end = mirrored ? (count + 1) / 2 : count;
@@ -30,8 +39,18 @@ void nevh__splitting_expand(const nevh_splitting *table, double weights[]) {
         long double times = mirrored && i + 1 < end ? 2 : 1;
         long double w = i + 2 < end ? weight(table, i) : left[i % 2] / times;
         left[i % 2] -= times * w;
-        weights[i] = (double)w;
+        put(w, i, rounded, wide);
         if (mirrored)
-            weights[count - 1 - i] = weights[i];
+            put(w, count - 1 - i, rounded, wide);
     }
+}
+
+/* In long double; rounded once. */
+void nevh__splitting_expand(const nevh_splitting *table, double weights[]) {
+    expand(table, weights, NULL);
+}
+
+void nevh__splitting_expand_wide(const nevh_splitting *table,
+                                 long double weights[]) {
+    expand(table, NULL, weights);
 }

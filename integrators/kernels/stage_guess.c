@@ -20,6 +20,7 @@
    it is that polynomial: two steps would save 5 of gauss16, which they cost.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tableau_private.h"
+#include <math.h>
 
 /* Slopes that take part, and steps. */
 enum { SLOPES = 16, MOST_STEPS = 9, FITTED = 2, FEW_STAGES = 5 };
@@ -95,4 +96,24 @@ void nevh__guess_weights(const nevh__rule *r, double guess[]) {
         x[j] = r->c[j % r->stages] - (long double)(j / r->stages);
     for (size_t i = 0; i < r->stages; i++)
         find_weights(r, x, i, guess);
+}
+
+/* A polynomial through few nodes, which may stand anywhere, and together. */
+void nevh__guess_plain(const nevh__rule *r, double guess[]) {
+    enum { MOST_DEGREE = 4 };
+    static const long double together = 1e-6L;
+    long double weights[NEVH__MOST_STAGES];
+    size_t apart = 0;
+    for (size_t i = 0; i < r->stages; i++) {
+        bool first = true;
+        for (size_t j = 0; j < i; j++)
+            first &= fabsl(r->c[i] - r->c[j]) > together;
+        apart += first;
+    }
+    size_t degree = apart - 1 < MOST_DEGREE ? apart - 1 : MOST_DEGREE;
+    for (size_t i = 0; i < r->stages; i++) {
+        fit(r->stages, r->c, degree, 1 + r->c[i], weights);
+        for (size_t j = 0; j < r->stages; j++)
+            guess[j * r->stages + i] = (double)weights[j];
+    }
 }

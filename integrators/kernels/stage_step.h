@@ -392,7 +392,12 @@ NEVH__INLINE void nevh__stage_split(size_t stages, const double b[], double h,
         hb[j] = h * b[j];
         rest -= hb[j];
     }
-    hb[0] = hb[stages - 1] = stages > 1 ? rest / 2 : rest;
+    hb[stages - 1] = rest;
+    if (stages == 1)
+        return;
+    double ends = b[0] + b[stages - 1];
+    hb[0] = ends == 0 ? h * b[0] : rest * (b[0] / ends);
+    hb[stages - 1] = rest - hb[0];
 }
 
 /* sum + rest += h b x; what that loses is below the last bit of the rest. */

@@ -34,7 +34,7 @@ typedef struct {
                             1 + c_i */
     size_t steps;        /* that a guess from several steps takes slopes of */
     double *long_guess;  /* the same of these, the last step's first */
-    size_t *order;       /* stages by rising weight */
+    size_t *order;       /* stages by rising size of the weight */
 } nevh__tableau;
 
 /* Gauss-Legendre, 1 to NEVH__MOST_STAGES: a_q = a_p.  Lobatto IIIA for
@@ -44,7 +44,15 @@ nevh__tableau *nevh__lobatto_new(size_t stages);
 /* The implicit Euler method: one stage, at the end of the step.  NULL for more,
    or when memory is out. */
 nevh__tableau *nevh__implicit_euler_new(size_t stages);
-/* The tableau of a scheme of one of the three. */
+/* An implicit method of one's own. */
+typedef struct {
+    size_t stages;
+    const long double *a, *b, *c; /* a row by row; no b is 0 */
+    bool symplectic;
+} nevh__implicit_table;
+extern const nevh_kernel nevh__implicit_kernel;
+nevh__tableau *nevh__implicit_new(const nevh__implicit_table *);
+/* The tableau of a scheme of one of the four. */
 nevh__tableau *nevh__stage_tableau_new(const nevh_integrator *);
 void nevh__tableau_free(nevh__tableau *);
 
@@ -57,6 +65,8 @@ void nevh__gauss_rule(size_t stages, nevh__rule *);
    guess[(k*stages + j)*stages + i]. */
 size_t nevh__guess_steps(size_t stages);
 void nevh__guess_weights(const nevh__rule *, double guess[]);
+/* Weights of one step's derivatives, of any rule. */
+void nevh__guess_plain(const nevh__rule *, double guess[]);
 /* P_s(x) and its derivative, |x| < 1; s from 1. */
 long double nevh__legendre(size_t s, long double x, long double *slope);
 

@@ -7,6 +7,7 @@
 #include "ensemble/ensemble_private.h"
 #include "gradient/field_private.h"
 #include "kernels/runge_kutta_private.h"
+#include "kernels/tableau_private.h"
 #include "native/native_private.h"
 
 /* Kernels whose plans hold nothing that constants of H change but scales, or
@@ -21,7 +22,8 @@ static const struct {
     {&nevh_nystrom_kernel, nevh__nystrom_lane_take, nevh__nystrom_lane_copy},
     {&nevh_gauss_kernel, NULL, NULL},
     {&nevh_lobatto_kernel, NULL, NULL},
-    {&nevh_implicit_euler_kernel, NULL, NULL}};
+    {&nevh_implicit_euler_kernel, NULL, NULL},
+    {&nevh__implicit_kernel, NULL, NULL}};
 enum { KERNELS = sizeof kernels / sizeof *kernels };
 
 static size_t kernel_of(const nevh_stepper *s) {

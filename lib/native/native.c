@@ -3,6 +3,7 @@
 #include "kernels/adaptive_verlet_private.h"
 #include "kernels/runge_kutta_private.h"
 #include "kernels/splitting_private.h"
+#include "kernels/tableau_private.h"
 #include "kernels/tao_private.h"
 #include "kernels/taylor_private.h"
 #include "native/native_private.h"
@@ -128,6 +129,7 @@ static const struct {
     {&nevh_gauss_kernel, nevh__write_stages, fill_stages, false, true},
     {&nevh_lobatto_kernel, nevh__write_stages, fill_stages, false, true},
     {&nevh_implicit_euler_kernel, nevh__write_stages, fill_stages, false, true},
+    {&nevh__implicit_kernel, nevh__write_stages, fill_stages, false, true},
     {&nevh__tao_kernel, nevh__write_tao, fill_tao, false, false},
     {&nevh__adaptive_verlet_kernel, nevh__write_adaptive_verlet,
      fill_adaptive_verlet, false, false},

@@ -70,6 +70,8 @@ static uint64_t digest_text(uint64_t digest, const char *text) {
 
 static uint64_t digest_statement(uint64_t digest,
                                  const nevh__statement *statement) {
+    if (statement->title)
+        digest = digest_text(digest, statement->title->text);
     return digest_text(digest_text(digest, statement->key.text),
                        statement->value.text);
 }

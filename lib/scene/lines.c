@@ -6,7 +6,7 @@
 static const char *const section_names[NEVH__SECTION_COUNT] = {
     "scene",    "parameters", "coordinates", "definitions", "effects",
     "friction", "invariants", "observables", "picture",     "sections",
-    "labels",   "ensemble",   "run"};
+    "labels",   "ensemble",   "run",         "integrator"};
 
 static size_t line_bytes(const char *text, size_t left) {
     const char *end = memchr(text, '\n', left);
@@ -66,7 +66,17 @@ static bool cut_lines(nevh_scene *s, const char *text, size_t bytes) {
     return !s->status;
 }
 
-/* [NAME] */
+/* NAME of [integrator NAME]. */
+static bool cut_title(nevh_scene *s, const nevh__piece *name,
+                      const nevh__piece *rest) {
+    if (!rest->text[0])
+        return nevh__scene_fail(s, NEVH_EINVAL, name,
+                                "an integrator has a name: [integrator NAME]");
+    s->titles[s->n_titles++] = *rest;
+    return true;
+}
+
+/* [NAME], or [integrator NAME] */
 static bool cut_section(nevh_scene *s, const nevh__piece *all,
                         nevh__section_kind *section) {
     size_t bytes = strlen(all->text),
@@ -74,14 +84,19 @@ static bool cut_section(nevh_scene *s, const nevh__piece *all,
     if (bytes < 2 || all->text[bytes - 1] != ']')
         return nevh__scene_fail(s, NEVH_EINVAL, all,
                                 "a section is a line of its own: [NAME]");
-    nevh__piece name;
+    nevh__piece name, rest;
+    char stop;
     if (!nevh__piece_take(s, &s->pool, all->line, from + 1, from + bytes - 1,
-                          &name))
+                          &rest))
+        return false;
+    name = rest;
+    if (strncmp(rest.text, "integrator", 10) == 0 &&
+        !nevh__piece_split(s, &s->pool, &rest, " \t", &name, &stop))
         return false;
     for (size_t i = 0; i < NEVH__SECTION_COUNT; i++)
         if (strcmp(section_names[i], name.text) == 0) {
             *section = (nevh__section_kind)i;
-            return true;
+            return *section != NEVH__INTEGRATOR || cut_title(s, &name, &rest);
         }
     return nevh__scene_fail_word(s, &name, "section", name.text, section_names,
                                  NEVH__SECTION_COUNT);
@@ -174,6 +189,8 @@ static bool cut_line(nevh_scene *s, const nevh__line *line, bool *begun,
         return cut_keys(s, &all, *section);
     nevh__statement *statement = &s->statements[s->n_statements++];
     statement->section = *section;
+    if (*section == NEVH__INTEGRATOR)
+        statement->title = &s->titles[s->n_titles - 1];
     return cut_key(s, &all, statement);
 }
 
@@ -183,7 +200,8 @@ bool nevh__scene_cut(nevh_scene *s, const char *text, size_t bytes) {
         return false;
     s->statements = nevh__pool_take(&s->pool, NEVH__GROUP * s->n_lines,
                                     sizeof *s->statements);
-    if (!s->statements)
+    s->titles = nevh__pool_take(&s->pool, s->n_lines, sizeof *s->titles);
+    if (!s->statements || !s->titles)
         return nevh__scene_no_memory(s);
     bool begun = false;
     nevh__section_kind section = NEVH__SCENE;

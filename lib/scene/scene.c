@@ -49,8 +49,8 @@ static nevh__scene_model *new_model(nevh_scene *s, bool exact) {
     else if (nevh__model_parameters(s, m) && nevh__model_coordinates(s, m) &&
              nevh__model_definitions(s, m) && nevh__model_values(s, m) &&
              nevh__model_terms(s, m) && nevh__model_shown(s, m) &&
-             nevh__model_labels(s, m) && nevh__model_run(s, m) &&
-             nevh__model_ensemble(s, m))
+             nevh__model_labels(s, m) && nevh__model_integrators(s, m) &&
+             nevh__model_run(s, m) && nevh__model_ensemble(s, m))
         return m;
     nevh__model_free(m);
     return NULL;
@@ -210,6 +210,7 @@ void nevh_scene_free(nevh_scene *s) {
     nevh__model_free(s->exact);
     nevh__model_free(s->model);
     nevh__scene_unload_code(s);
+    nevh__scene_forget_integrators(s);
     for (size_t i = 0; i < s->n_statements; i++)
         nevh__head_free(&s->statements[i].head);
     for (size_t i = 0; i < s->n_assignments; i++)

@@ -38,6 +38,7 @@ typedef enum {
     NEVH__LABELS,
     NEVH__ENSEMBLE,
     NEVH__RUN,
+    NEVH__INTEGRATOR,
     NEVH__SECTION_COUNT
 } nevh__section_kind;
 
@@ -48,7 +49,8 @@ typedef struct {
     nevh__section_kind section;
     nevh__head head;
     nevh__piece key, value;
-    size_t group, member; /* names of the line; which it is, from 0 */
+    size_t group, member;     /* names of the line; which it is, from 0 */
+    const nevh__piece *title; /* NAME of [integrator NAME], else NULL */
 } nevh__statement;
 
 /* An effect, of terms or friction or both. */
@@ -129,8 +131,9 @@ typedef struct {
     nevh__drawn *drawn;
     size_t n_drawn;
     nevh__stop stop;
-    nevh__scene_ensemble *ensemble; /* NULL: nothing is varied */
-    nevh__formula judged;           /* where the scene has one, from outside */
+    const nevh_integrator **schemes; /* as many as titles; the scene's */
+    nevh__scene_ensemble *ensemble;  /* NULL: nothing is varied */
+    nevh__formula judged;            /* where the scene has one, from outside */
     nevh__owned owned_shown;
     double *velocities, *velocity_buffer; /* n; NULL until asked for */
 } nevh__scene_model;
@@ -146,7 +149,10 @@ struct nevh_scene {
     size_t n_lines;
     nevh__statement *statements;
     size_t n_statements;
-    nevh__switch *effects; /* in order of appearance */
+    nevh__piece *titles; /* of [integrator NAME] */
+    size_t n_titles;
+    struct nevh__scheme *schemes; /* all that were made of them */
+    nevh__switch *effects;        /* in order of appearance */
     size_t n_effects;
     bool switched;                 /* from outside */
     nevh__statement **assignments; /* from outside, the newest last */
@@ -279,6 +285,15 @@ bool nevh__model_shown(nevh_scene *, nevh__scene_model *); /* and monitored */
 bool nevh__model_crossings(nevh_scene *, nevh__scene_model *);
 bool nevh__model_labels(nevh_scene *, nevh__scene_model *);
 bool nevh__model_run(nevh_scene *, nevh__scene_model *);
+bool nevh__model_integrators(nevh_scene *, nevh__scene_model *);
+void nevh__scene_forget_integrators(nevh_scene *);
+/* The number of a key among those of its section; `count`, with a message, when it is
+   none or there already. */
+size_t nevh__statement_key(nevh_scene *, const nevh__statement *,
+                           const char *const keys[], size_t count);
+/* Says that no integrator has that name, the scene's own included. */
+bool nevh__scene_fail_integrator(nevh_scene *, const nevh__piece *,
+                                 const char *name);
 void nevh__model_free(nevh__scene_model *);
 /* The model of the scene as it is, whose numbers have all their digits; NULL on
    failure.  The scene owns it until it changes. */

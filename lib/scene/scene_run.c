@@ -42,22 +42,36 @@ static bool check_gradient(nevh_scene *s, const nevh__piece *name) {
            nevh__scene_fail_word(s, name, "gradient", name->text, known, count);
 }
 
+bool nevh__scene_fail_integrator(nevh_scene *s, const nevh__piece *at,
+                                 const char *name) {
+    const char *known[128];
+    size_t count = 0, most = sizeof known / sizeof *known;
+    const nevh_integrator *const *all = nevh_integrators();
+    for (size_t i = 0; i < s->n_titles && count < most; i++)
+        known[count++] = s->titles[i].text;
+    for (; *all && count < most; all++)
+        known[count++] = nevh_integrator_name(*all);
+    return nevh__scene_fail_word(s, at, "integrator", name, known, count);
+}
+
+static bool is_integrator(const nevh_scene *s, const char *name) {
+    for (size_t i = 0; i < s->n_titles; i++)
+        if (strcmp(s->titles[i].text, name) == 0)
+            return true;
+    return nevh_integrator_named(name);
+}
+
 /* NAME or NAME+transform */
 static bool check_integrator(nevh_scene *s, const nevh__piece *name) {
     char plain[NEVH__NAME_LENGTH];
-    const char *known[128];
-    size_t count = 0, bytes = strcspn(name->text, "+");
-    const nevh_integrator *const *all = nevh_integrators();
-    for (; all[count] && count < sizeof known / sizeof *known; count++)
-        known[count] = nevh_integrator_name(all[count]);
+    size_t bytes = strcspn(name->text, "+");
     bytes = bytes < sizeof plain ? bytes : sizeof plain - 1;
     memcpy(plain, name->text, bytes);
     plain[bytes] = '\0';
     const char *tail = strchr(name->text, '+');
-    if (nevh_integrator_named(plain) &&
-        (!tail || strcmp(tail, "+transform") == 0))
-        return true;
-    return nevh__scene_fail_word(s, name, "integrator", plain, known, count);
+    return (is_integrator(s, plain) &&
+            (!tail || strcmp(tail, "+transform") == 0)) ||
+           nevh__scene_fail_integrator(s, name, plain);
 }
 
 typedef bool (*checker)(nevh_scene *, const nevh__piece *);
@@ -280,15 +294,15 @@ static bool (*const run_takers[])(nevh_scene *, nevh__scene_model *,
                                   const nevh__piece *) = {RUN_KEYS(RUN_TAKE)};
 static const char *const scene_keys[] = {"title", "source", "effects"};
 
-/* The number of a key; that of keys when it is none, or there already. */
-static size_t key_index(nevh_scene *s, const nevh__statement *statement,
-                        const char *const keys[], size_t count) {
+size_t nevh__statement_key(nevh_scene *s, const nevh__statement *statement,
+                           const char *const keys[], size_t count) {
     const char *name = statement->head.name;
     size_t k = 0;
     if (!nevh__head_plain(s, statement))
         return count;
     for (const nevh__statement *one = s->statements; one < statement; one++)
         if (one->section == statement->section &&
+            one->title == statement->title &&
             strcmp(one->head.name, name) == 0) {
             nevh__scene_fail(s, NEVH_EINVAL, &statement->key,
                              "%s is there already, in line %zu", name,
@@ -305,14 +319,14 @@ static size_t key_index(nevh_scene *s, const nevh__statement *statement,
 static bool take_setting(nevh_scene *s, nevh__scene_model *m,
                          const nevh__statement *statement) {
     const size_t count = sizeof run_keys / sizeof *run_keys;
-    size_t k = key_index(s, statement, run_keys, count);
+    size_t k = nevh__statement_key(s, statement, run_keys, count);
     return k < count && run_takers[k](s, m, &statement->value);
 }
 
 static bool check_heading(nevh_scene *s, nevh__scene_model *m,
                           const nevh__statement *statement) {
     (void)m;
-    return key_index(s, statement, scene_keys, 3) < 3;
+    return nevh__statement_key(s, statement, scene_keys, 3) < 3;
 }
 
 bool nevh__model_run(nevh_scene *s, nevh__scene_model *m) {

@@ -5,6 +5,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "support.h"
 #include <math.h>
+#include <nevh/extend.h>
 #include <string.h>
 
 enum { ROOM = 64 };
@@ -127,6 +128,10 @@ static nevh_separability separability;
     X(STATUS, nevh_field_energy_floor, (NULL, 0.1, in, in, 0.1, 1, out))       \
     X(ANY, nevh_field_counts, (NULL))                                          \
     X(NUMBER, nevh_field_effect_values, (NULL, "x"))                           \
+    X(POINTER, nevh_integrator_new, (NULL, NULL))                              \
+    X(ANY, nevh_integrator_free, (NULL))                                       \
+    X(STATUS, nevh_integrator_facts, (NULL, NULL))                             \
+    X(POINTER, nevh_scene_integrator, (NULL, 0))                               \
     X(TEXT, nevh_integrator_name, (NULL))                                      \
     X(TEXT, nevh_integrator_aliases, (NULL))                                   \
     X(TEXT, nevh_integrator_source, (NULL))                                    \

@@ -1,57 +1,16 @@
-/* nevh tests: splittings satisfy their order conditions, algebraically.
-
-   A step is the product of exp(w A) for its drifts and exp(w B) for its kicks
-   in their turn, a series in the words over the letters A and B.  It is of
-   order p if that series is the one of exp(A + B) up to degree p: in each word
-   of k letters the coefficient is 1/k!.  A and B satisfy no relation in
-   general, so each word is a condition of its own.
-
-   Where T is quadratic in p, [B,[B,[B,A]]] = 0, and as far as degree 7 no other
-   relation: BBBA = 3 BBAB - 3 BABB + ABBB.  BBBA does not overlap with itself,
-   so words without it are independent, and every word is a sum of such.
+/* nevh tests: splittings satisfy their order conditions, algebraically, as
+   order_private.h has them.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/stepper_private.h"
 #include "kernels/splitting_private.h"
+#include "kernels/order_private.h"
 #include "support.h"
 #include "kernels/tao_private.h"
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-enum { MOST_DEGREE = 11, MOST_OPERATIONS = 100, MOST_GIVEN = 32 };
-
-/* A word is its letters as bits behind a leading 1: A is 0, B is 1. */
-typedef struct {
-    long double word[2 << MOST_DEGREE];
-} series;
-
-/* Times exp(w letter), up to a degree. */
-static void multiply(series *s, size_t degree, size_t letter, long double w) {
-    for (size_t word = ((size_t)2 << degree) - 1; word > 1; word--) {
-        long double factor = 1, sum = s->word[word];
-        size_t left = word;
-        for (int j = 1; left > 1 && left % 2 == letter; j++) {
-            left /= 2;
-            factor *= w / j;
-            sum += factor * s->word[left];
-        }
-        s->word[word] = sum;
-    }
-}
-
-/* Words of `degree` letters, by those without BBBA. */
-static void reduce(series *s, size_t degree) {
-    for (size_t word = ((size_t)2 << degree) - 1; word >> degree; word--)
-        for (size_t i = 0; i + 4 <= degree; i++) {
-            if ((word >> i & 15) != 14)
-                continue;
-            long double c = s->word[word];
-            s->word[word] = 0;
-            s->word[word - ((size_t)1 << i)] += 3 * c; /* BBAB */
-            s->word[word - ((size_t)3 << i)] -= 3 * c; /* BABB */
-            s->word[word - ((size_t)7 << i)] += c;     /* ABBB */
-        }
-}
+enum { MOST_OPERATIONS = 100, MOST_GIVEN = 32 };
 
 typedef struct {
     nevh_operation first;
@@ -66,38 +25,18 @@ static splitting expanded(const nevh_splitting *table) {
     return s;
 }
 
-/* The largest coefficient by which a step differs from exp(A + B) in words of
-   each degree, in units of what rounding of the weights can do to it. */
-static void find_defects(const splitting *x, bool quadratic, size_t degree,
-                         double defect[]) {
-    static series s;
-    memset(&s, 0, sizeof s);
-    s.word[1] = 1;
-    long double size[2] = {0, 0}, due = 1, rounding = DBL_EPSILON;
-    for (size_t i = 0; i < x->count; i++) {
-        bool kick = (x->first == NEVH_KICK) == (i % 2 == 0);
-        multiply(&s, degree, kick, x->weights[i]);
-        size[kick] += fabs(x->weights[i]);
-    }
-    for (size_t k = 1; k <= degree; k++) {
-        due /= (long double)k;
-        rounding *= fmaxl(size[0], size[1]) / (k > 1 ? (long double)k - 1 : 1);
-        for (size_t word = (size_t)1 << k; word >> k == 1; word++)
-            s.word[word] -= due;
-        if (quadratic)
-            reduce(&s, k);
-        defect[k] = 0;
-        for (size_t word = (size_t)1 << k; word >> k == 1; word++)
-            defect[k] = fmax(defect[k], (double)fabsl(s.word[word] / rounding));
-    }
-}
-
-/* Up to which degree the conditions hold; tried up to `most`. */
+/* Up to which degree the conditions hold for weights that are rounded; tried up to
+   `most`. */
 static int order_of(const splitting *x, bool quadratic, int most) {
-    double defect[MOST_DEGREE + 1];
-    find_defects(x, quadratic, (size_t)most, defect);
+    nevh__conditions found[NEVH__MOST_DEGREE + 1];
+    long double weights[MOST_OPERATIONS];
+    for (size_t i = 0; i < x->count; i++)
+        weights[i] = x->weights[i];
+    ck_assert(
+        nevh__words_check(&(nevh__operations){x->first, x->count, weights},
+                          quadratic, (size_t)most, DBL_EPSILON, found));
     for (int k = 1; k <= most; k++)
-        if (defect[k] > 1)
+        if (found[k].excess > 1)
             return k - 1;
     return most;
 }

@@ -1,50 +1,18 @@
-/* nevh tests: Runge-Kutta tables satisfy their order conditions.
-
-   One condition for each rooted tree: sum_i b_i phi_i(t) = 1/gamma(t)
-   [J. C. Butcher, Coefficients for the study of Runge-Kutta integration
-   processes, J. Austral. Math. Soc. 3 (1963) 185-201].  The trees are
-   generated: one of order n is a multiset of smaller ones, put on a root.
+/* nevh tests: Runge-Kutta tables satisfy their order conditions, as order_private.h
+   has them.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "support.h"
+#include "kernels/order_private.h"
 #include <math.h>
 #include <nevh/extend.h>
 #include <string.h>
 
-enum { MOST_ORDER = 9, MOST_TREES = 486, MOST_STAGES = 12, MOST_ENTRIES = 256 };
+enum { MOST_ORDER = NEVH__MOST_TREE, MOST_STAGES = 12, MOST_ENTRIES = 256 };
 
-/* Children are earlier trees, from late to early. */
-typedef struct {
-    int order, children, child[MOST_ORDER];
-    long double density;
-} tree;
-
-static tree trees[MOST_TREES];
-static int tree_count, order_end[MOST_ORDER + 1]; /* trees up to an order */
-
-/* Adds all trees that have these children and more, of `left` vertices and not
-   later than `latest`. */
-static void grow(tree t, int left, int latest) {
-    if (left == 0) {
-        trees[tree_count++] = t;
-        return;
-    }
-    for (int i = latest; i >= 0; i--) {
-        if (trees[i].order > left)
-            continue;
-        tree more = t;
-        more.child[more.children++] = i;
-        more.density *= trees[i].density;
-        grow(more, left - trees[i].order, i);
-    }
-}
+static nevh__trees trees;
 
 static void plant(void) {
-    tree_count = 0;
-    for (int order = 1; order <= MOST_ORDER; order++) {
-        grow((tree){.order = order, .density = order}, order - 1,
-             tree_count - 1);
-        order_end[order] = tree_count;
-    }
+    nevh__trees_plant(&trees, MOST_ORDER);
 }
 
 /* A table with entries that may be changed. */
@@ -75,32 +43,22 @@ static tableau tableau_of(const nevh_butcher *table) {
     return x;
 }
 
-/* The elementary weights of every stage. */
-static void weigh(const tableau *x, long double phi[][MOST_STAGES]) {
-    static long double above[MOST_TREES][MOST_STAGES]; /* sum_j a_ij phi_j */
-    for (int t = 0; t < tree_count; t++)
-        for (size_t i = 0; i < x->stages; i++) {
-            phi[t][i] = 1;
-            for (int k = 0; k < trees[t].children; k++)
-                phi[t][i] *= above[trees[t].child[k]][i];
-            above[t][i] = 0;
-            for (size_t j = 0; j < i; j++)
-                above[t][i] += x->a[i][j] * phi[t][j];
-        }
-}
-
 /* How far the trees of orders `from` to `to` are off: of a method's weights
    (whole = 1), or of weights that should give 0. */
 static long double defect(const tableau *x, const long double weights[],
                           long double whole, int from, int to) {
-    static long double phi[MOST_TREES][MOST_STAGES];
-    long double worst = 0;
-    weigh(x, phi);
-    for (int t = order_end[from - 1]; t < order_end[to]; t++) {
+    static long double phi[NEVH__TREES * MOST_STAGES];
+    static long double above[NEVH__TREES * MOST_STAGES];
+    long double worst = 0, a[MOST_STAGES * MOST_STAGES] = {0};
+    for (size_t i = 0; i < x->stages; i++)
+        for (size_t j = 0; j < i; j++)
+            a[i * x->stages + j] = x->a[i][j];
+    nevh__trees_weigh(&trees, x->stages, a, phi, above);
+    for (int t = trees.end[from - 1]; t < trees.end[to]; t++) {
         long double sum = 0;
         for (size_t i = 0; i < x->stages; i++)
-            sum += weights[i] * phi[t][i];
-        worst = fmaxl(worst, fabsl(sum * trees[t].density - whole));
+            sum += weights[i] * phi[(size_t)t * x->stages + i];
+        worst = fmaxl(worst, fabsl(sum * trees.tree[t].density - whole));
     }
     return worst;
 }
@@ -167,13 +125,13 @@ TEST(number_of_trees) {
     static const int known[] = {1, 1, 2, 4, 9, 20, 48, 115, 286};
     plant();
     for (int order = 1; order <= MOST_ORDER; order++)
-        ck_assert_int_eq(order_end[order] - order_end[order - 1],
+        ck_assert_int_eq(trees.end[order] - trees.end[order - 1],
                          known[order - 1]);
-    ck_assert_int_eq(order_end[8], 200);
+    ck_assert_int_eq(trees.end[8], 200);
     long double bushy = 1, tall = 1; /* n and n! */
-    for (int t = 0; t < order_end[8]; t++) {
-        bushy = fminl(bushy, trees[t].density / trees[t].order);
-        tall = fmaxl(tall, trees[t].density);
+    for (int t = 0; t < trees.end[8]; t++) {
+        bushy = fminl(bushy, trees.tree[t].density / trees.tree[t].order);
+        tall = fmaxl(tall, trees.tree[t].density);
     }
     ck_assert(bushy == 1 && tall == 40320);
 }

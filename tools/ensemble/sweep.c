@@ -41,7 +41,7 @@ static int make_sweep(sweep_job *j) {
                              .ordered = !is_array(o),
                              .native = p->native,
                              .native_cache = p->no_cache ? "" : NULL};
-    is.integrator = plan_scheme(j->integrator, &is.transformed);
+    is.integrator = plan_scheme(p, j->integrator, &is.transformed);
     is.transformed = plan_transform(p, j->integrator) != NULL;
     if (nevh_integrator_adaptive(is.integrator) && p->tolerances)
         is.tolerance = p->tolerance[0];

@@ -6,13 +6,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-const nevh_integrator *plan_scheme(const char *name, bool *transformed) {
+const nevh_integrator *plan_scheme_at(const plan *p, size_t i) {
+    size_t own = 0;
+    while (nevh_scene_integrator(p->scene, own) && own <= i)
+        own++;
+    return i < own ? nevh_scene_integrator(p->scene, i)
+                   : nevh_integrators()[i - own];
+}
+
+const nevh_integrator *plan_scheme(const plan *p, const char *name,
+                                   bool *transformed) {
     const char *plus = strchr(name, '+');
     *transformed = plus && strcmp(plus, "+transform") == 0;
     if (plus && !*transformed)
         return NULL;
     char *own = text_print("%.*s", (int)strcspn(name, "+"), name);
-    const nevh_integrator *scheme = nevh_integrator_named(own);
+    const nevh_integrator *scheme = nevh_scene_integrator_named(p->scene, own);
     free(own);
     return scheme;
 }
@@ -43,13 +52,14 @@ static void add_transformed(plan *p, const options *o) {
     p->added = used ? 0 : count;
     for (size_t i = 0; i < count; i++) {
         const nevh_integrator *scheme =
-            nevh_integrator_named(p->integrators.item[i]);
+            nevh_scene_integrator_named(p->scene, p->integrators.item[i]);
         used = used || strchr(p->integrators.item[i], '+') ||
                (scheme && nevh_integrator_own_time(scheme));
     }
     for (size_t i = 0; !used && i < count; i++) {
         const char *name = p->integrators.item[i];
-        const nevh_integrator *scheme = nevh_integrator_named(name);
+        const nevh_integrator *scheme =
+            nevh_scene_integrator_named(p->scene, name);
         if (scheme && nevh_integrator_needs(scheme) == 0 &&
             nevh_integrator_symplectic(scheme) == NEVH_YES)
             list_print(&p->integrators, "%s+transform", name);
@@ -59,12 +69,12 @@ static void add_transformed(plan *p, const options *o) {
 static int check_integrators(const plan *p) {
     list names = {0};
     int status = TOOL_OK;
-    for (size_t i = 0; nevh_integrators()[i]; i++)
-        list_add(&names, nevh_integrator_name(nevh_integrators()[i]));
+    for (size_t i = 0; plan_scheme_at(p, i); i++)
+        list_add(&names, nevh_integrator_name(plan_scheme_at(p, i)));
     for (size_t i = 0; !status && i < p->integrators.count; i++) {
         bool transformed;
         const char *name = p->integrators.item[i];
-        if (!plan_scheme(name, &transformed))
+        if (!plan_scheme(p, name, &transformed))
             status = tool_unknown("integrator", name, &names);
         else if (transformed && !nevh_scene_transform(p->scene))
             status = tool_refuse("%s: the scene has no transform", name);
@@ -293,7 +303,7 @@ void plan_tell_why(const char *why) {
 
 const nevh_system *plan_transform(const plan *p, const char *name) {
     bool transformed;
-    const nevh_integrator *scheme = plan_scheme(name, &transformed);
+    const nevh_integrator *scheme = plan_scheme(p, name, &transformed);
     return transformed || nevh_integrator_own_time(scheme)
                ? nevh_scene_transform(p->scene)
                : NULL;
@@ -302,7 +312,7 @@ const nevh_system *plan_transform(const plan *p, const char *name) {
 nevh_stepper *plan_stepper(const plan *p, const char *name) {
     nevh_options o = plan_options(p, p->gradients.item[0]);
     bool transformed;
-    const nevh_integrator *scheme = plan_scheme(name, &transformed);
+    const nevh_integrator *scheme = plan_scheme(p, name, &transformed);
     o.transform = plan_transform(p, name);
     if (nevh_integrator_adaptive(scheme) && p->tolerances)
         o.tolerance = p->tolerance[0];
@@ -351,7 +361,7 @@ void plan_note_first(const plan *p, const char *integrator, list *notes) {
                    ? " (the scene's first that fits)"
                    : "");
     bool transformed;
-    if (nevh_integrator_adaptive(plan_scheme(integrator, &transformed)) &&
+    if (nevh_integrator_adaptive(plan_scheme(p, integrator, &transformed)) &&
         p->tolerances)
         list_print(notes,
                    "tolerance: %.9g%s; steps are no longer than dt, at whose "

@@ -59,8 +59,12 @@ double plan_steps(const plan *, double h);
 /* Says once why steps could not be compiled. */
 void plan_tell_native(const nevh_stepper *);
 void plan_tell_why(const char *why); /* "": there is nothing to tell */
-/* The scheme of "gauss4" or "gauss4+transform"; NULL for other names. */
-const nevh_integrator *plan_scheme(const char *name, bool *transformed);
+/* The scheme of "gauss4" or "gauss4+transform", the scene's own included; NULL for
+   other names. */
+const nevh_integrator *plan_scheme(const plan *, const char *name,
+                                   bool *transformed);
+/* All schemes, the scene's own first; NULL: there are no more. */
+const nevh_integrator *plan_scheme_at(const plan *, size_t i);
 /* The transform that it is to be planned with: of names with "+transform", and
    of schemes that choose their own times; NULL: none. */
 const nevh_system *plan_transform(const plan *, const char *name);

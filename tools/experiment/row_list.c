@@ -7,7 +7,7 @@
 static void add_row(const plan *p, row_list *r, size_t gradient,
                     const char *name, double dt, double tolerance) {
     bool transformed;
-    const nevh_integrator *scheme = plan_scheme(name, &transformed);
+    const nevh_integrator *scheme = plan_scheme(p, name, &transformed);
     bool same = r->count &&
                 r->row[r->count - 1].gradient == p->gradients.item[gradient] &&
                 r->row[r->count - 1].dt == dt &&
@@ -21,9 +21,9 @@ static void add_row(const plan *p, row_list *r, size_t gradient,
                                .group = group};
 }
 
-static bool adapts(const char *name) {
+static bool adapts(const plan *p, const char *name) {
     bool transformed;
-    return nevh_integrator_adaptive(plan_scheme(name, &transformed));
+    return nevh_integrator_adaptive(plan_scheme(p, name, &transformed));
 }
 
 /* Adaptive schemes land on the ends of the longest dt. */
@@ -33,7 +33,7 @@ static void add_adaptive(const plan *p, row_list *r, size_t gradient) {
         longest = fmax(longest, p->dt[j]);
     for (size_t i = 0; i < p->integrators.count; i++)
         for (size_t k = 0; k < p->tolerances; k++)
-            if (adapts(p->integrators.item[i]))
+            if (adapts(p, p->integrators.item[i]))
                 add_row(p, r, gradient, p->integrators.item[i], longest,
                         p->tolerance[k]);
 }
@@ -45,7 +45,7 @@ row_list rows_of(const plan *p) {
     for (size_t g = 0; g < p->gradients.count; g++) {
         for (size_t j = 0; j < p->dts; j++)
             for (size_t i = 0; i < p->integrators.count; i++)
-                if (!adapts(p->integrators.item[i]))
+                if (!adapts(p, p->integrators.item[i]))
                     add_row(p, &r, g, p->integrators.item[i], p->dt[j], 0);
         add_adaptive(p, &r, g);
     }

@@ -56,7 +56,7 @@ int plan_reference(plan *p, double end) {
     if (p->reference || p->no_reference)
         return TOOL_OK;
     if (name && strcmp(name, "exact") != 0)
-        scheme = plan_scheme(name, &transformed);
+        scheme = plan_scheme(p, name, &transformed);
     if (transformed)
         return tool_refuse("reference = %s: its steps must have the same "
                            "length; take it without +transform",

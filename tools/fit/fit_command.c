@@ -169,7 +169,7 @@ static void add_row(const job *j, table *t, size_t k) {
 
 static bool is_adaptive(const fitting *f) {
     return nevh_integrator_adaptive(
-        plan_scheme(f->now.integrator, &(bool){false}));
+        plan_scheme(f->plan, f->now.integrator, &(bool){false}));
 }
 
 static void add_record(const job *j, table *t, size_t k) {

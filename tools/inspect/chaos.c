@@ -263,7 +263,7 @@ static int run_one(job *j, const char *integrator, double dt) {
     nevh_options o = plan_options(p, p->gradients.item[0]);
     o.transform = plan_transform(p, integrator);
     nevh_chaos_options of = {.integrator =
-                                 plan_scheme(integrator, &transformed),
+                                 plan_scheme(p, integrator, &transformed),
                              .options = &o,
                              .t_start = p->run->t_start,
                              .dt = dt,
@@ -308,7 +308,7 @@ static const char *first_of(const plan *p) {
         const char *name = p->integrators.item[i];
         nevh_stepper *s = plan_stepper(p, name);
         bool transformed, fits = !nevh_stepper_status(s);
-        const nevh_integrator *scheme = plan_scheme(name, &transformed);
+        const nevh_integrator *scheme = plan_scheme(p, name, &transformed);
         nevh_stepper_free(s);
         if (fits && !transformed && !nevh_integrator_own_time(scheme) &&
             !nevh_integrator_adaptive(scheme))

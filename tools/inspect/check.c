@@ -4,6 +4,8 @@
 #include "experiment/conserved.h"
 #include "experiment/pace.h"
 #include <math.h>
+#include <nevh/extend.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -71,6 +73,34 @@ static void tell_state(const plan *p, list *notes) {
     list_print(notes, "%zu degree%s of freedom, H = %.9g at the start", p->n,
                p->n == 1 ? "" : "s", h);
     nevh_field_free(field);
+}
+
+static void tell_table(const nevh_integrator *scheme, list *notes) {
+    nevh_scheme_facts x;
+    char missing[300], kinetic[80] = "";
+    if (nevh_integrator_facts(scheme, &x))
+        return;
+    if (x.any_kinetic < x.order)
+        snprintf(kinetic, sizeof kinetic, " (%d where T is not quadratic in p)",
+                 x.any_kinetic);
+    nevh_scheme_shortfall(&x, missing, sizeof missing);
+    list_print(notes, "  %s: order %d%s%s%s%s%s%s",
+               nevh_integrator_name(scheme), x.order,
+               x.needed_for ? "" : " or more", kinetic,
+               x.symmetric ? ", symmetric" : ", not symmetric",
+               x.symplectic ? ", symplectic" : ", not symplectic",
+               x.needed_for ? "; " : "", missing);
+}
+
+/* Facts that follow from the tables of [integrator NAME]. */
+static void tell_tables(const plan *p, list *notes) {
+    const nevh_integrator *scheme;
+    for (size_t i = 0; (scheme = nevh_scene_integrator(p->scene, i)); i++) {
+        if (i == 0)
+            list_add(notes, "The scene's own integrators, by the algebra of "
+                            "their tables:");
+        tell_table(scheme, notes);
+    }
 }
 
 typedef struct {
@@ -154,9 +184,28 @@ typedef struct {
 static bool is_planned(const plan *p, const nevh_integrator *scheme) {
     bool transformed;
     for (size_t i = 0; i < p->integrators.count; i++)
-        if (plan_scheme(p->integrators.item[i], &transformed) == scheme)
+        if (plan_scheme(p, p->integrators.item[i], &transformed) == scheme)
             return true;
     return false;
+}
+
+static bool is_own(const plan *p, const nevh_integrator *scheme) {
+    const nevh_integrator *own;
+    for (size_t i = 0; (own = nevh_scene_integrator(p->scene, i)); i++)
+        if (own == scheme)
+            return true;
+    return false;
+}
+
+/* And of the scene's own the first condition that fails. */
+static void add_claims(const plan *p, const nevh_integrator *scheme, table *t) {
+    nevh_scheme_facts x;
+    char missing[300] = "";
+    table_text(t, nevh_claim_name(nevh_integrator_symplectic(scheme)));
+    table_text(t, nevh_claim_name(nevh_integrator_symmetric(scheme)));
+    if (is_own(p, scheme) && !nevh_integrator_facts(scheme, &x))
+        nevh_scheme_shortfall(&x, missing, sizeof missing);
+    table_text(t, *missing ? missing : NULL);
 }
 
 static void add_row(fitting *f, const nevh_integrator *scheme,
@@ -169,6 +218,8 @@ static void add_row(fitting *f, const nevh_integrator *scheme,
     if (f->why)
         table_text(f->table, status ? nevh_stepper_message(s) : NULL);
     add_trial_run(f->plan, scheme, !status, f->why, f->ahead, f->table);
+    if (f->why)
+        add_claims(f->plan, scheme, f->table);
 }
 
 static void add_scheme(fitting *f, const nevh_integrator *scheme) {
@@ -217,8 +268,9 @@ static void add_schemes(fitting *f, page *result) {
     table_titles(f->table, f->why ? check_command.columns
                                   : "integrator,order,fits,stable\nbelow,"
                                     "omega dt,");
-    for (size_t i = 0; nevh_integrators()[i]; i++)
-        add_scheme(f, nevh_integrators()[i]);
+    const nevh_integrator *scheme;
+    for (size_t i = 0; (scheme = plan_scheme_at(f->plan, i)); i++)
+        add_scheme(f, scheme);
     if (!f->why)
         tell_others(f, &result->after);
     list_free(&f->refused.names);
@@ -236,6 +288,7 @@ static int check_plan(const options *o, const plan *p) {
         tell_probes(p, &result.before);
         trial_run_words(p, &ahead, &result.before);
         conserved_words(p, &result.before);
+        tell_tables(p, &result.before);
     }
     add_schemes(&(fitting){.plan = p,
                            .ahead = &ahead,
@@ -272,6 +325,6 @@ const command check_command = {
                 "check pendulum --all",
     .options = "SCENE STEPS TABLE all",
     .columns = "integrator,order,fits,why,stable_below,h_omega,"
-               "prediction",
+               "prediction,symplectic,symmetric,shortfall",
     .run = check,
 };

@@ -19,7 +19,7 @@ typedef struct {
 
 static void add_choice(choice *c, const plan *p, const char *name) {
     bool transformed;
-    const nevh_integrator *scheme = plan_scheme(name, &transformed);
+    const nevh_integrator *scheme = plan_scheme(p, name, &transformed);
     nevh_options o = plan_options(p, p->gradients.item[0]);
     o.gradient_step = o.gradient_step > 0 ? o.gradient_step : 1e-3;
     o.binding = 1; /* nothing runs: what planning would find out is spared */
@@ -34,12 +34,12 @@ static void add_choice(choice *c, const plan *p, const char *name) {
 
 static choice choices(const plan *p) {
     size_t most = 0;
-    while (nevh_integrators()[most])
+    while (plan_scheme_at(p, most))
         most++;
     choice c = {0, tool_allocate(2 * most, sizeof *c.name),
                 tool_allocate(2 * most, sizeof *c.fits)};
     for (size_t i = 0; i < most; i++) {
-        const char *name = nevh_integrator_name(nevh_integrators()[i]);
+        const char *name = nevh_integrator_name(plan_scheme_at(p, i));
         char *transformed = text_print("%s+transform", name);
         add_choice(&c, p, name);
         if (nevh_scene_transform(p->scene))

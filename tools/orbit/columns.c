@@ -111,7 +111,7 @@ static bool any(const quantities *c, column_kind low, column_kind high) {
 int columns_follow(quantities *c, const char *integrator, double dt) {
     const plan *p = c->plan;
     bool transformed;
-    const nevh_integrator *scheme = plan_scheme(integrator, &transformed);
+    const nevh_integrator *scheme = plan_scheme(p, integrator, &transformed);
     nevh_options o = plan_options(p, p->gradients.item[0]);
     if (!any(c, COLUMN_SHADOW_ERROR, COLUMN_SHADOW_ERROR))
         return NEVH_OK;

@@ -72,7 +72,7 @@ static nevh_loop *new_loop(flow_job *j, const flow_row *r, int eye,
     size_t *steps = tool_allocate(j->times, sizeof *steps);
     nevh_options o = plan_options(p, p->gradients.item[0]);
     bool transformed;
-    const nevh_integrator *scheme = plan_scheme(r->integrator, &transformed);
+    const nevh_integrator *scheme = plan_scheme(p, r->integrator, &transformed);
     o.transform = plan_transform(p, r->integrator);
     if (nevh_integrator_adaptive(scheme) && p->tolerances)
         o.tolerance = p->tolerance[0];
@@ -166,10 +166,10 @@ static char *status_of(const flow_row *r, nevh_loop_area at) {
                                           at.error / fabs(at.area));
 }
 
-static const char *symplectic(const flow_row *r) {
+static const char *symplectic(const flow_job *j, const flow_row *r) {
     bool transformed;
-    return nevh_claim_name(
-        nevh_integrator_symplectic(plan_scheme(r->integrator, &transformed)));
+    return nevh_claim_name(nevh_integrator_symplectic(
+        plan_scheme(&j->plan, r->integrator, &transformed)));
 }
 
 static void add_records(table *t, const flow_job *j) {
@@ -181,7 +181,7 @@ static void add_records(table *t, const flow_job *j) {
             char *status = status_of(r, at);
             table_text(t, j->plan.name);
             table_text(t, r->integrator);
-            table_text(t, symplectic(r));
+            table_text(t, symplectic(j, r));
             table_number(t, r->dt);
             table_number(t, at.t);
             table_number(t, at.area);
@@ -218,7 +218,7 @@ static void show_row(table *t, const flow_job *j, const flow_row *r) {
         if (i == 0)
             table_group(t);
         table_text(t, r->integrator);
-        table_text(t, symplectic(r));
+        table_text(t, symplectic(j, r));
         table_shown(t, "%.4g", r->dt);
         if (isnan(at.area)) {
             for (int c = 0; c < 4; c++)
@@ -299,12 +299,12 @@ static void words(const flow_job *j, list *to) {
             if (!isnan(at.area) && (at.inside || flow_resolved(at)))
                 last = at;
             if (!isnan(at.area) && flow_resolved(at) &&
-                strcmp(symplectic(r), "yes") == 0) {
+                strcmp(symplectic(j, r), "yes") == 0) {
                 worst = fmax(worst, fabs(at.area / first - 1));
                 any = true;
             }
         }
-        if (!isnan(last.area) && strcmp(symplectic(r), "yes") != 0 &&
+        if (!isnan(last.area) && strcmp(symplectic(j, r), "yes") != 0 &&
             !j->plan.friction)
             tell_change(r, last.area / first, last.t, to);
         if (r->status)

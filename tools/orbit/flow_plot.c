@@ -36,10 +36,10 @@ static double shift_of(const flow_job *j, const nevh_loop *l, size_t time) {
                : 0;
 }
 
-static bool keeps(const flow_row *r) {
+static bool keeps(const flow_job *j, const flow_row *r) {
     bool transformed;
-    return nevh_integrator_symplectic(
-               plan_scheme(r->integrator, &transformed)) == NEVH_YES &&
+    return nevh_integrator_symplectic(plan_scheme(&j->plan, r->integrator,
+                                                  &transformed)) == NEVH_YES &&
            !isnan(nevh_loop_result(r->loop, 0).area);
 }
 
@@ -51,9 +51,9 @@ static window find_window(const flow_job *j) {
     double *q = tool_allocate(2 * j->plan.n, sizeof *q), *p = q + j->plan.n;
     bool any = false;
     for (size_t i = 0; i < j->rows; i++)
-        any = any || keeps(&j->row[i]);
+        any = any || keeps(j, &j->row[i]);
     for (size_t i = 0; i < j->rows; i++)
-        if (keeps(&j->row[i]) || !any)
+        if (keeps(j, &j->row[i]) || !any)
             for (size_t time = 0; time < j->times; time++) {
                 const nevh_loop *l = j->row[i].loop;
                 nevh_loop_area at = nevh_loop_result(l, time);

@@ -351,8 +351,8 @@ static nevh_stepper *plan_symplectic(const plan *p) {
     const char *name;
     bool transformed;
     nevh_stepper *s = plan_first(p, &name);
-    if (!s ||
-        nevh_integrator_symplectic(plan_scheme(name, &transformed)) != NEVH_NO)
+    if (!s || nevh_integrator_symplectic(plan_scheme(p, name, &transformed)) !=
+                  NEVH_NO)
         return s;
     nevh_stepper_free(s);
     return plan_stepper(p, "gauss4");

@@ -104,7 +104,7 @@ static int run(job *j, const char *integrator, size_t finer, char **why) {
     const plan *p = &j->plan;
     nevh_stepper *s = plan_stepper(p, integrator);
     bool transformed;
-    const nevh_integrator *scheme = plan_scheme(integrator, &transformed);
+    const nevh_integrator *scheme = plan_scheme(p, integrator, &transformed);
     bool own = transformed || nevh_integrator_own_time(scheme);
     double *q = tool_allocate(2 * p->n, sizeof *q), *m = q + p->n, stopped;
     nevh_energy *watch = plan_watch(p);

@@ -16,7 +16,7 @@ typedef struct {
     size_t *member; /* of each */
     size_t count, room, every, at, failed;
     char *status; /* why there are none, or the first that failed; or NULL */
-    bool refused;
+    bool refused, symplectic;
 } orbits_of;
 
 typedef struct {
@@ -59,6 +59,8 @@ static char *why_of(const job *j, const orbits_of *o, const char *message) {
 static void run_orbits(job *j, orbits_of *o) {
     const plan *p = &j->plan;
     nevh_stepper *s = plan_stepper(p, o->integrator);
+    o->symplectic = nevh_integrator_symplectic(plan_scheme(
+                        p, o->integrator, &(bool){false})) == NEVH_YES;
     if (nevh_stepper_status(s)) {
         o->refused = true;
         o->status = text_print("refused: %s", nevh_stepper_message(s));
@@ -86,9 +88,7 @@ static double wrapped(const job *j, double x) {
 }
 
 static bool is_symplectic(const orbits_of *o) {
-    bool transformed;
-    return !o->refused && nevh_integrator_symplectic(plan_scheme(
-                              o->integrator, &transformed)) == NEVH_YES;
+    return !o->refused && o->symplectic;
 }
 
 /* The range of symplectic integrators, if there are any, with a margin; of an angle

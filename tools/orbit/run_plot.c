@@ -145,7 +145,7 @@ void picture_note(const run_picture *picture, plot *to, const char *more) {
 static nevh_stepper *new_stepper(const plan *p, const char *integrator) {
     nevh_options o = plan_options(p, p->gradients.item[0]);
     bool transformed;
-    const nevh_integrator *scheme = plan_scheme(integrator, &transformed);
+    const nevh_integrator *scheme = plan_scheme(p, integrator, &transformed);
     o.transform = plan_transform(p, integrator);
     o.balance = p->balance;
     if (nevh_integrator_needs_tolerance(scheme) && p->tolerances)

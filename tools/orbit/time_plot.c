@@ -144,7 +144,8 @@ static bool is_shown(const orbit *o, const quantity *what, double t) {
     static const double whole = 1e-6;
     double steps = (t - o->plan.run->t_start) / o->plan.dt[0];
     bool transformed;
-    const nevh_integrator *scheme = plan_scheme(o->integrator, &transformed);
+    const nevh_integrator *scheme =
+        plan_scheme(&o->plan, o->integrator, &transformed);
     return !is_energy(what) || transformed ||
            nevh_integrator_own_time(scheme) ||
            fabs(steps - round(steps)) < whole;

@@ -68,7 +68,7 @@ trajectory *trajectory_new(const plan *p, const char *integrator,
                       .energy = NAN,
                       .now.at = {.t = p->run->t_start, .written = NAN}};
     r->own_time =
-        nevh_integrator_own_time(plan_scheme(integrator, &(bool){false})) ||
+        nevh_integrator_own_time(plan_scheme(p, integrator, &(bool){false})) ||
         plan_transform(p, integrator);
     r->stops = nevh_scene_stops(p->scene);
     reserve(r);

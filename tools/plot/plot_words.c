@@ -69,7 +69,7 @@ void plot_note_run(plot *to, const plan *p, const char *scheme,
 char *plot_scheme(const plan *p, const char *integrator) {
     const char *unit = nevh_scene_label(p->scene, "t");
     bool transformed;
-    if (nevh_integrator_adaptive(plan_scheme(integrator, &transformed)) &&
+    if (nevh_integrator_adaptive(plan_scheme(p, integrator, &transformed)) &&
         p->tolerances)
         return text_print("%s, tolerance %.4g", integrator, p->tolerance[0]);
     return text_print("%s, dt = %.4g%s%s", integrator, p->dt[0],

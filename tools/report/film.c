@@ -82,7 +82,7 @@ static reel shoot(const film *f, const char *integrator) {
     bool transformed;
     row as = {.integrator = integrator,
               .gradient = p->gradients.item[0],
-              .scheme = plan_scheme(integrator, &transformed),
+              .scheme = plan_scheme(p, integrator, &transformed),
               .dt = f->dt};
     reel r = reel_new(f, integrator);
     nevh_stepper *s = row_stepper(p, &as, p->balance);
@@ -130,7 +130,7 @@ static void shoot_both(film *f, const char *integrator, double dt) {
 
 static bool is_fit(const plan *p, const char *name) {
     bool transformed;
-    const nevh_integrator *scheme = plan_scheme(name, &transformed);
+    const nevh_integrator *scheme = plan_scheme(p, name, &transformed);
     return !transformed && !nevh_integrator_adaptive(scheme) &&
            !nevh_integrator_own_time(scheme) &&
            nevh_integrator_symplectic(scheme) == NEVH_YES && p->dts > 0;

@@ -178,7 +178,7 @@ static void make_studies(costs *c) {
     for (size_t g = 0; g < p->gradients.count; g++)
         for (size_t i = 0; i < p->integrators.count; i++)
             c->study[c->count++] =
-                study_new(p->integrators.item[i], p->gradients.item[g]);
+                study_new(p, p->integrators.item[i], p->gradients.item[g]);
 }
 
 bool costs_count(const costs *c, const study *l) {

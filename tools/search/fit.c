@@ -21,9 +21,10 @@ static bool fits(const plan *p, const nevh_integrator *scheme) {
 }
 
 static void fitting_integrators(const plan *p, list *names) {
-    for (size_t i = 0; nevh_integrators()[i]; i++)
-        if (fits(p, nevh_integrators()[i]))
-            list_add(names, nevh_integrator_name(nevh_integrators()[i]));
+    const nevh_integrator *scheme;
+    for (size_t i = 0; (scheme = plan_scheme_at(p, i)); i++)
+        if (fits(p, scheme))
+            list_add(names, nevh_integrator_name(scheme));
 }
 
 bool gradient_fits(const plan *p, const char *gradient, char **why) {

@@ -41,7 +41,7 @@ static void states_free(orbit_states *o) {
 
 static const nevh_integrator *scheme_of(const context *c) {
     bool transformed;
-    return plan_scheme(c->integrator, &transformed);
+    return plan_scheme(c->plan, c->integrator, &transformed);
 }
 
 static nevh_options gradient_options(const context *c, const char *gradient,

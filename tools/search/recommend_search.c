@@ -267,7 +267,7 @@ void advice_search(advice *a) {
     a->study = tool_allocate(p->integrators.count, sizeof *a->study);
     for (size_t i = 0; i < p->integrators.count; i++)
         a->study[a->count++] =
-            study_new(p->integrators.item[i], a->gradients.item[0]);
+            study_new(p, p->integrators.item[i], a->gradients.item[0]);
     descend(a);
     refine(a);
     advice_time_once(a);

@@ -11,17 +11,18 @@ static const double usable_below = 0.5; /* of the scale of errors */
 /* As much as a run that is watched costs. */
 enum { RUNS_A_ROW = 2 };
 
-study study_new(const char *integrator, const char *gradient) {
+study study_new(const plan *p, const char *integrator, const char *gradient) {
     bool transformed;
     return (study){.integrator = integrator,
                    .gradient = gradient,
-                   .scheme = plan_scheme(integrator, &transformed)};
+                   .scheme = plan_scheme(p, integrator, &transformed)};
 }
 
 study study_like(const study *l, const char *gradient) {
-    study other = study_new(l->integrator, gradient);
-    other.keeps = l->keeps;
-    return other;
+    return (study){.integrator = l->integrator,
+                   .gradient = gradient,
+                   .scheme = l->scheme,
+                   .keeps = l->keeps};
 }
 
 void study_free(study *l) {

@@ -75,7 +75,7 @@ void search_end(search *);
 double search_longest_dt(const plan *);
 
 /* study.c: one integrator and gradient at many steps. */
-study study_new(const char *integrator, const char *gradient);
+study study_new(const plan *, const char *integrator, const char *gradient);
 /* The same integrator with another gradient, or for another end. */
 study study_like(const study *, const char *gradient);
 void study_free(study *);
