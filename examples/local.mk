@@ -75,6 +75,7 @@ dist_example_DATA = \
 	examples/nevh_cost.c \
 	examples/own_kernel.c \
 	examples/paper/divergence.c \
+	examples/paper/listing1.py \
 	examples/paper/paper.sh \
 	examples/pendulum_energy.c \
 	examples/steps_that_follow.c \

@@ -174,6 +174,12 @@ class Symbol:
     def __ceil__(self):
         return -apply("floor", -self)
 
+    def __round__(self, digits=0):
+        """Halves go up, not to the even number; no orbit stays at one."""
+        if digits:
+            refuse("it rounds to %r digits" % digits, self)
+        return apply("floor", self + 0.5)
+
     @property
     def real(self):
         return self
@@ -192,8 +198,8 @@ class Symbol:
     __truediv__, __mod__ = _operator("/"), _operator("mod")
     __lt__, __le__, __gt__, __ge__, __eq__, __ne__ = map(
         _compared, ("<", "<=", ">", ">=", "==", "!="))
-    __float__, __int__, __index__, __round__, __trunc__, __complex__ = map(
-        _became, ("float", "int", "an index or a range", "round", "trunc", "complex"))
+    __float__, __int__, __index__, __trunc__, __complex__ = map(
+        _became, ("float", "int", "an index or a range", "trunc", "complex"))
     __bool__ = _compared("is it true?")
 
     def __hash__(self):
@@ -318,3 +324,20 @@ def taking_symbols(name, plain):
 def scalar(x):
     """Of an array of one number, that number, as math takes it."""
     return x.item() if getattr(x, "size", 0) == 1 and hasattr(x, "item") else x
+
+
+class _Kind(type):
+    def __instancecheck__(cls, x):
+        return isinstance(x, cls.plain)
+
+    def __subclasscheck__(cls, kind):
+        return issubclass(kind, cls.plain)
+
+
+class Float(float, metaclass=_Kind):
+    """float, of which a symbol is one already."""
+    plain = float
+
+    def __new__(cls, x=0.0):
+        x = scalar(x)
+        return x if isinstance(x, Symbol) else float(x)

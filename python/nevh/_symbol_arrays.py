@@ -9,7 +9,7 @@ import types
 
 import numpy as np
 
-from ._symbol import (FUNCTIONS, NUMPY_NAMES, Symbol, apply, extreme, has_symbol, length,
+from ._symbol import (Float, FUNCTIONS, NUMPY_NAMES, Symbol, apply, extreme, has_symbol, length,
                      product, refuse, total)
 
 
@@ -45,7 +45,7 @@ _ELEMENTS = {
     "fmin": extreme("min"),
     "logaddexp": lambda a, b: np.log(np.exp(a) + np.exp(b)),
     "clip": lambda x, low, high: extreme("min")(extreme("max")(x, low), high)}
-_BY_SYMBOL = {"sign": lambda x: apply("sign", x), "heaviside": _heaviside,
+_BY_SYMBOL = {"rint": round, "sign": lambda x: apply("sign", x), "heaviside": _heaviside,
               "j0": lambda x: apply("bessel_j0", x), "j1": lambda x: apply("bessel_j1", x)}
 for _name, _known in NUMPY_NAMES.items():
     _BY_SYMBOL.setdefault(_name, FUNCTIONS[_known])
@@ -117,6 +117,7 @@ def _array_ufunc(self, ufunc, method, *inputs, **named):
 
 
 Symbol.__array_ufunc__ = _array_ufunc
+Float.dtype = np.dtype(float)  # what numpy.zeros(3, dtype=float) makes of it
 
 
 class Symbols(np.ndarray):
@@ -198,6 +199,22 @@ def _var(a, axis=None, **named):
     if axis is not None:
         middle = np.expand_dims(middle, axis)
     return _mean((a - middle) ** 2, axis)
+
+
+def _round(a, decimals=0, **named):
+    if decimals:
+        refuse("it rounds to %r digits" % decimals, *symbols(a).ravel())
+    return np.rint(symbols(a))
+
+
+def _gradient_of(f, *spacing, axis=None, **named):
+    """numpy.gradient in one dimension, with one spacing."""
+    f = symbols(f)
+    if f.ndim != 1 or named or len(spacing) > 1 or np.ndim((spacing or (1,))[0]):
+        refuse("numpy.gradient is known of one axis with one spacing", *f.ravel())
+    h = spacing[0] if spacing else 1.0
+    ends = [(f[1] - f[0]) / h], [(f[-1] - f[-2]) / h]
+    return np.concatenate([ends[0], (f[2:] - f[:-2]) / (2 * h), ends[1]])
 
 
 def _norm(a, ord=None, axis=None, keepdims=False):
@@ -367,7 +384,7 @@ SUBSTITUTES = {
     np.ascontiguousarray: _keep, np.zeros: _filled(0), np.empty: _filled(0),
     np.ones: _filled(1), np.full: _full, np.zeros_like: _like(0),
     np.empty_like: _like(0), np.ones_like: _like(1),
-    np.eye: _constructor(np.eye), np.identity: _constructor(np.identity)}
+    np.float64: Float, np.eye: _constructor(np.eye), np.identity: _constructor(np.identity)}
 
 
 def _substitute(own, plain):
@@ -392,10 +409,11 @@ OWN = {
     np.max: lambda a, axis=None, **n: symbols(a).max(axis),
     np.min: lambda a, axis=None, **n: symbols(a).min(axis),
     np.clip: lambda a, low, high, **n: np.minimum(np.maximum(a, low), high),
-    np.linalg.norm: _norm, np.linalg.inv: _inv, np.linalg.det: _determinant,
-    np.linalg.solve: _solve, np.cross: _cross, np.einsum: _einsum,
+    np.around: _round, np.gradient: _gradient_of, np.linalg.norm: _norm,
+    np.linalg.inv: _inv, np.linalg.det: _determinant, np.linalg.solve: _solve,
+    np.cross: _cross, np.einsum: _einsum,
     np.real: lambda a: a}
-OWN[np.amax], OWN[np.amin] = OWN[np.max], OWN[np.min]
+OWN[np.amax], OWN[np.amin], OWN[np.round] = OWN[np.max], OWN[np.min], _round
 for _function in list(OWN):
     SUBSTITUTES[_function] = _substitute(OWN[_function], _function)
 

@@ -114,35 +114,37 @@ def warn(untraceable, calls, t0, y0):
     place = place_of(untraceable, calls)
     if place not in _factors:
         _factors[place] = _factor(calls, t0, y0)
-    slower = _factors[place]
-    cost = ", about %.0f times slower than as a formula" % slower if slower else ""
+    slower, took = _factors[place]
+    cost = "about %.0f times slower than as a formula" % slower if slower else \
+        "slowly, %.1g ms a gradient" % (1e3 * took)
     warnings.warn_explicit(
-        "H runs as a function of Python%s: %s" % (cost, reason(untraceable, calls)),
+        "H runs as a function of Python, %s: %s" % (cost, reason(untraceable, calls)),
         RuntimeWarning, place[0], place[1], registry=_warned)
 
 
 def _factor(calls, t0, y0):
     """How many times as long a gradient of a function takes, by differences of order
-    4, as that of a formula of its size; one digit of it, or None."""
+    4, as that of a formula of its size: one digit of it, or None; and its seconds."""
+    took = 4 * len(y0) * seconds_a_call(calls, t0, y0)
+    traced = guess(calls, t0, y0)
     try:
-        traced = guess(calls, t0, y0)
-        scene = _parsed(traced.text) if traced else None
+        scene = traced and _parsed(traced.text)
     except Untraceable:
         scene = None
     if scene is None:
-        return None
-    quick = _seconds_a_gradient(scene, t0, y0)
-    ratio = 4 * len(y0) * seconds_a_call(calls, t0, y0) / quick
-    return float("%.1g" % ratio) if ratio > 1 else None
+        return None, took
+    return float("%.1g" % (took / _seconds_a_gradient(scene, t0, y0))), took
 
 
-def _seconds_a_gradient(scene, t0, y0, width=64):
+def _seconds_a_gradient(scene, t0, y0):
+    """Of blocks of 4 states: that is what it costs within a step."""
+    width = 4
     field = _field(scene, t0, y0, gradient=_lib.gradient_named(b"exact"))
     rows, at = _numbers([x for x in y0 for _ in range(width)])
     times, times_at = _numbers([t0] * width)
     out, out_at = _numbers([0.0] * (width * len(y0)))
     half, best = 4 * len(y0) * width, math.inf
-    for _ in range(5):
+    for _ in range(50):
         start = time.perf_counter()
         _lib.field_gradient(field, width, times_at, at, at + half, out_at, out_at + half)
         best = min(best, time.perf_counter() - start)

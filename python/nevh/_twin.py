@@ -19,7 +19,7 @@ import math
 import sys
 import types
 
-from ._symbol import Symbol, extreme, is_foreign, scalar, taking_symbols
+from ._symbol import Float, Symbol, extreme, is_foreign, taking_symbols
 
 try:
     import numpy as np
@@ -41,26 +41,7 @@ class _MathTwin(types.ModuleType):
         return _MATH.get(value, value) if callable(value) else value
 
 
-class _Kind(type):
-    def __instancecheck__(cls, x):
-        return isinstance(x, cls.plain)
-
-    def __subclasscheck__(cls, kind):
-        return issubclass(kind, cls.plain)
-
-
-class _Float(float, metaclass=_Kind):
-    """float, of which a symbol is one already."""
-    plain = float
-    if np is not None:
-        dtype = np.dtype(float)
-
-    def __new__(cls, x=0.0):
-        x = scalar(x)
-        return x if isinstance(x, Symbol) else float(x)
-
-
-_BUILTINS = {max: extreme("max"), min: extreme("min"), float: _Float}
+_BUILTINS = {max: extreme("max"), min: extreme("min"), float: Float}
 
 
 class Twins:
@@ -69,7 +50,7 @@ class Twins:
     def __init__(self):
         self.known, self.spaces, self.cells, self.kept = {}, {}, {}, []
         self.builtins = dict(vars(builtins), max=extreme("max"), min=extreme("min"),
-                             float=_Float, __import__=self._import)
+                             float=Float, __import__=self._import)
 
     def _import(self, name, *rest):
         return self.of(__import__(name, *rest))
@@ -90,7 +71,7 @@ class Twins:
         if isinstance(x, types.FunctionType):
             return self._function(x)
         if isinstance(x, type):
-            return _Float if x is float else self._class(x)
+            return Float if x is float else self._class(x)
         if isinstance(x, types.MethodType):
             return types.MethodType(self.of(x.__func__), self.of(x.__self__))
         if isinstance(x, functools.partial):

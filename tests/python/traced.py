@@ -102,7 +102,7 @@ def whole(t, y):
 
 
 def rounded(t, y):
-    return y[1]**2 / 2 + round(y[0])  # the line of rounded
+    return y[1]**2 / 2 + round(y[0], 2)  # the line of rounded
 
 
 def gamma(t, y):
@@ -252,7 +252,8 @@ def test_kinds_of_code():
 
     def with_numbers(t, y):
         whole, rest = divmod(y[0], 1.0)
-        return y[1]**2 / 2 + rest**2 + max(y[0], 0.1, 0.2) + pow(y[0], 3) + y[0] % 2.5
+        return (y[1]**2 / 2 + rest**2 + max(y[0], 0.1, 0.2) + pow(y[0], 3) + y[0] % 2.5
+                + (y[0] - round(y[0]))**2)
 
     def with_state(t, y):
         count = 0
@@ -397,6 +398,11 @@ def test_the_papers_listing():
     assert not G._subject.calls_python
     orbit = nevh.solve(G, [0.0, 3.0], [1.0, 0.0])
     assert close(last(orbit), [1, 0], 1e-6)
+    with open(os.path.join(os.path.dirname(__file__), "..", "..", "examples", "paper",
+                           "listing1.py"), encoding="utf-8") as file:
+        listing = {}
+        exec(compile(file.read(), file.name, "exec"), listing)
+    assert listing["long"].energy_error < 1e-6 and listing["long"].success
     steps = nevh.solve(G, [0.0, 3.0], [1.0, 0.0], "rk4", dt=0.01)
     assert steps.gradient == "central4" and close(last(steps), [1, 0], 1e-3)
 
