@@ -1,7 +1,7 @@
 # The package for Python over the shared library, which it finds from where it is
 # installed.  make install pythondir=DIR puts it elsewhere.
 pythondir = $(pkgdatadir)/python
-dist_python_DATA = python/who-keeps-the-energy.ipynb
+dist_python_DATA = python/who-keeps-the-energy.ipynb python/your-own-integrator.ipynb
 python_packagedir = $(pythondir)/nevh
 dist_python_package_DATA = $(python_package)
 python_package = \
@@ -15,6 +15,7 @@ python_package = \
 	python/nevh/_graph_text.py \
 	python/nevh/_hgrad.py \
 	python/nevh/_library.py \
+	python/nevh/_own.py \
 	python/nevh/_plot.py \
 	python/nevh/_scene.py \
 	python/nevh/_solve.py \
@@ -53,7 +54,7 @@ portable_name = $(PACKAGE)-$(VERSION)-portable
 portable: python/nevh_files
 	rm -rf $(portable_name) && cp -R python/nevh_files $(portable_name)
 	$(MKDIR_P) $(portable_name)/share/nevh/python $(portable_name)/share/doc/nevh
-	cp -R $(srcdir)/python/nevh $(srcdir)/python/who-keeps-the-energy.ipynb \
+	cp -R $(srcdir)/python/nevh $(srcdir)/python/*.ipynb \
 	  $(portable_name)/share/nevh/python/
 	cp $(srcdir)/README.md $(srcdir)/COPYING $(portable_name)/share/doc/nevh/
 	-$(MAKE) html $(sheets_html) && \

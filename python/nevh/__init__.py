@@ -17,11 +17,12 @@ from ._library import (Error, Failed, integrators, library, Refused, verdicts,
 from ._scene import Scene, scenes
 from ._solve import solve
 from ._hgrad import HGrad
+from ._own import Integrator
 from ._table import Table, Text
 from ._commands import command, _function, gradients, main, _names
 from ._sweep import sweep
 
-__all__ = ["solve", "sweep", "HGrad", "Scene", "Table", "Text", "Error", "Refused", "Failed",
+__all__ = ["solve", "sweep", "HGrad", "Integrator", "Scene", "Table", "Text", "Error", "Refused", "Failed",
            "integrators", "gradients", "scenes", "verdicts", "library", "command"]
 
 for _name in __all__:  # their place is this package, as messages and pickles say it

@@ -50,6 +50,12 @@ class HGrad:
         Any) -> None: ...
     def __call__(self, t: float, y: Any) -> Any: ...
 
+class Integrator:
+    def __init__(self, name: str = 'own', *, kick: Sequence[Any] | None = None, drift:
+        Sequence[Any] | None = None, first: str = 'kick', a: Sequence[Sequence[Any]] |
+        None = None, b: Sequence[Any] | None = None, c: Sequence[Any] | None = None,
+        compose: Any = None, step: Callable[..., Any] | None = None) -> None: ...
+
 class Scene:
     def __init__(self, source: str | PathLike[str] | Callable[..., float] | None = None,
         parameters: Mapping[str, Any] | None = None, coordinates: Sequence[str] | None =

@@ -20,6 +20,7 @@ from typing import Any
 
 from ._library import _closest, Error, Failed, gradient_names, _lib, _name_list, Refused, _text, _trees
 from ._scene import _assign, _is_row, Scene, _scene, _starts, _value
+from ._own import Integrator, rows_of_functions
 from ._table import Table, Text
 
 # Options that have other names here, or none.
@@ -199,6 +200,12 @@ def _is_number(text):
         return False
 
 
+def _several(value):
+    """A list of one or of several."""
+    return list(value) if isinstance(value, (list, tuple)) else [] if value is None else \
+        [value]
+
+
 def _joined(name, value):
     if isinstance(value, str) or not hasattr(value, "__iter__"):
         value = [value]
@@ -243,7 +250,7 @@ def _data_file(columns, path):
     return path
 
 
-def _scene_words(of, source, given, folder, coordinates):
+def _scene_words(of, source, given, folder, coordinates, sections=""):
     """A scene as the command takes it: a file, and options for what is changed."""
     made = _scene(source, given.pop("parameters", None), coordinates,
                   given.pop("with_effects", None) or (),
@@ -254,10 +261,15 @@ def _scene_words(of, source, given, folder, coordinates):
         if y0 is None and "vary" not in given or ends and "t_end" not in given:
             raise Refused("a formula needs y0" + " and t_end" * ends)
     words, path = list(made._changes), made.path
-    if path is None or not os.path.exists(path):
-        words, path = [], os.path.join(folder, made.name + ".nevh")
+    if path is None or not os.path.exists(path) or sections:
+        if path is None or not os.path.exists(path):
+            words, text = [], made.text
+        else:
+            with open(path, encoding="utf-8") as file:
+                text = file.read()
+        path = os.path.join(folder, made.name + ".nevh")
         with open(path, "w", encoding="utf-8") as file:
-            file.write(made.text)
+            file.write(text + "\n" + sections)
     for name, value in _starts(made, y0).items():
         words += ["--start", "%s=%s" % (name, _value(name, value))]
     return words, path, made.name
@@ -273,6 +285,10 @@ def _words(of, given, folder):
     more = _name_list("options", more)
     words, operands, names = [], [], []
     coordinates = given.pop("coordinates", None)
+    own = [one for one in _several(given.get("integrators")) if isinstance(one, Integrator)]
+    if own:
+        given["integrators"] = [getattr(one, "name", one) for one in given["integrators"]] \
+            if isinstance(given["integrators"], (list, tuple)) else own[0].name
     if operand and operand.startswith("SCENE"):
         sources = given.pop("scene")
         many = operand.endswith("...") and isinstance(sources, (list, tuple))
@@ -280,7 +296,8 @@ def _words(of, given, folder):
             place = os.path.join(folder, str(k))
             os.mkdir(place)
             extra, path, name = _scene_words(of, source, given if not many else dict(given),
-                                       place, coordinates)
+                                             place, coordinates,
+                                             "\n".join(one.text for one in own))
             words, operands, names = words + extra, operands + [path], names + [name]
         if many:
             for name in _of_scenes:
@@ -301,7 +318,26 @@ def _words(of, given, folder):
 
 
 def _call(name, given):
-    """Run a command; its table, its text or its picture."""
+    """Run a command; its table, its text or its picture.  compare runs integrators that
+    are functions itself."""
+    functions = [one for one in _several(given.get("integrators"))
+                 if getattr(one, "step", None)]
+    if not functions:
+        return _call_command(name, given)
+    if name != "compare":
+        raise Refused("%s is a function of Python: solve and compare take it, nevh %s does "
+                      "not" % (functions[0].name, name))
+    others = [one for one in _several(given["integrators"]) if one not in functions]
+    table = _call_command(name, dict(given, integrators=others or ["verlet"]))
+    rows = rows_of_functions(functions, table, given)
+    if not others:
+        del table[:]
+    table.extend(rows)
+    return table
+
+
+def _call_command(name, given):
+    """Run a command by its name."""
     of = _list()[0][name]
     has_table = "format" in of["options"]
     # What makes no table writes a file: that of the caller, else one that is read back.

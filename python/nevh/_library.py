@@ -149,7 +149,8 @@ scene_system:pp scene_start:ippp scene_run_settings:Rp scene_transform:pp
 scene_stops:bp scene_stop_text:sp scene_vary:ippz scene_set_outcomes:ips
 system_from:pzpp system_free:-p system_status:ip system_message:sp system_probe:ipdpppp
 system_traits:ip system_friction:bpp integrator_named:ps integrator_name:sp
-integrator_adaptive:bp integrator_own_time:bp integrator_needs:ip integrators:p
+integrator_adaptive:bp integrator_own_time:bp integrator_needs:ip integrators:p scene_integrator_named:pps integrator_facts:ipp
+scheme_shortfall:sppz energy_observe:ipzdpp
 integrator_needs_formulas:bp gradient_named:ps gradient_name:sp gradients:p
 stepper_new:pppp stepper_free:-p stepper_status:ip stepper_message:sp
 stepper_time:dp stepper_taken:zp stepper_counts:Cp stepper_order:ip run_at:ipdddpzpppppz
@@ -272,6 +273,8 @@ def _closest(name, names):
 
 
 def _integrator(name):
+    if hasattr(name, "_pointer"):  # an Integrator
+        return name._pointer, False
     if isinstance(name, type):  # scipy.integrate.DOP853
         name = name.__name__
     name, plus, rest = _text("method", name).partition("+")

@@ -14,12 +14,13 @@ import warnings
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Callable, Mapping, Sequence
 
-from ._library import (_check, _gradient, _integrator, _JudgedRun, _lib,
+from ._library import (_check, Failed, _gradient, _integrator, _JudgedRun, _lib,
                        _observe_fn, _Observer, _Options, Refused, _STOPPED, _text, verdicts)
 from ._arrays import _cut, np, _numbers, _positive, _real, Result, _table, _whole_from_one
 from ._scene import Scene
 from ._functions import _Subject
 from ._events import DenseOutput, Events
+from ._own import Integrator, run_steps
 
 
 def _set_gradient_steps(o, scene, given, n, what):
@@ -427,7 +428,7 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
         given = dict(locals())
         del given["H"], given["t_span"], given["y0"]
         return _solve_members(H, t_span, y0, given)
-    if method is not None and not isinstance(method, type):
+    if method is not None and not isinstance(method, (type, Integrator)):
         _text("method", method)
     start, found = None, Events(events, args)
     if hasattr(H, "_problem"):  # a HGrad
@@ -456,6 +457,18 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
         k = next(k for k, number in enumerate(y[0]) if not math.isfinite(number))
         raise Refused("y0[%d]%s is %g" % (
             k, ", the start of %s," % scene.names[k] if scene else "", y[0][k]))
+    if getattr(method, "step", None):
+        if found or dense_output or observe or t_eval is not None or dt is None:
+            raise Refused("%s is a function: it takes dt, and neither t_eval, observe, "
+                          "events nor dense_output" % method.name)
+        h = math.copysign(_positive("dt", dt), t_end - t0)
+        result = run_steps(method, subject, gradient or ("exact" if scene else "central4"),
+                           y, t0, h, list(_times_of_steps(t0, t_end, h)))
+        if check and result.status:
+            error = Failed(result.message)
+            error.result = result
+            raise error
+        return result
     if scene:
         settings = scene._settings()
         if method is None and settings.integrators:
@@ -503,8 +516,8 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
     if keeps_steps and len(result.t):
         _find(result, plan, h, t_eval, found, dense_output)
     names = scene.names if scene else None
-    result.update(method=method, dt=dt, tolerance=tolerance, gradient=gradient,
-                  names=names)
+    result.update(method=getattr(method, "name", method), dt=dt, tolerance=tolerance,
+                  gradient=gradient, names=names)
     try:
         subject.trap.spring()
         if check and status not in (0, _STOPPED):

@@ -15,7 +15,9 @@ done
 # The commands as functions; what they make goes to a folder of their own.
 "$python" "$srcdir/tests/python/commands.py" "$top" || status=1
 "$python" -c 'import numpy' 2>/dev/null &&
-    { "$python" "$srcdir/tests/python/wrong_calls.py" || status=1; }
+    for check in own wrong_calls; do
+        "$python" "$srcdir/tests/python/$check.py" || status=1
+    done
 
 # The same states by all ways to take steps.
 folder=$PWD/same.$$

@@ -1,0 +1,140 @@
+"""nevh tests: integrators of one's own, by numbers and as functions.
+
+SPDX-License-Identifier: GPL-3.0-or-later
+"""
+
+import pickle
+import sys
+from fractions import Fraction
+
+sys.dont_write_bytecode = True
+import numpy as np  # noqa: E402
+import nevh  # noqa: E402
+
+FORMULA = "p^2/2 - cos(q)"
+
+
+def raised(kind, text, function, *arguments, **named):
+    try:
+        function(*arguments, **named)
+    except kind as error:
+        assert text in str(error), "%r is not in %r" % (text, str(error))
+        return
+    raise AssertionError("%s was not raised" % kind.__name__)
+
+
+def leapfrog(force, t, q, p, h):
+    p = p + h / 2 * force(t, q)
+    q = q + h * p
+    return q, p + h / 2 * force(t + h, q)
+
+
+def trapezium(force, t, q, p, h):
+    v, a = p, force(t, q)
+    w, b = p + h * a, force(t + h, q + h * v)
+    return q + h / 2 * (v + w), p + h / 2 * (a + b)
+
+
+def midpoint(force, velocity, t, q, p, h):
+    """Midpoint's rule by iteration, for any H."""
+    x, y = q, p
+    for _ in range(60):
+        a, b = (q + x) / 2, (p + y) / 2
+        x, y = q + h * velocity(t + h / 2, a, b), p + h * force(t + h / 2, a, b)
+    return x, y
+
+
+def test_numbers():
+    """Order, symmetry and symplecticity of published tables; a copy gives the same bits."""
+    mine = nevh.Integrator("mine", kick=["1/2", Fraction(1, 2)], drift=[1])
+    assert (mine.order, mine.symmetric, mine.symplectic) == (2, True, True)
+    cube = ["1/(2 - 2^(1/3))", "1 - 2/(2 - 2^(1/3))", "1/(2 - 2^(1/3))"]
+    triple = nevh.Integrator("triple", compose={"verlet": cube})
+    assert triple.order == 4 and triple.symplectic
+    again = nevh.Integrator("again", compose={mine: cube})
+    assert again.order == 4
+    broken = nevh.Integrator("broken", compose={"verlet": [1.35, -1.7, 1.35]})
+    assert broken.order == 2 and "digit may be wrong" in broken.shortfall
+    classic = nevh.Integrator("classic", a=[[], [0.5], [0, 0.5], [0, 0, 1]],
+                              b=["1/6", "1/3", "1/3", "1/6"])
+    assert (classic.order, classic.symplectic) == (4, False)
+    s = "sqrt(3)/6"
+    gauss = nevh.Integrator("gauss", a=[["1/4", "1/4 - " + s], ["1/4 + " + s, "1/4"]],
+                            b=[0.5, 0.5])
+    assert (gauss.order, gauss.symmetric, gauss.symplectic) == (4, True, True)
+    for own, name in ((mine, "verlet"), (classic, "rk4"), (triple, "forest-ruth")):
+        a, b = (nevh.solve("pendulum", (0, 20), method=one, dt=0.05) for one in (own, name))
+        assert name == "forest-ruth" or (a.y == b.y).all(), name
+        assert abs(a.y - b.y).max() < 1e-9 and a.method == own.name
+    copy = pickle.loads(pickle.dumps(triple))
+    assert (copy.order, copy.text) == (4, triple.text)
+
+
+def test_tables_take_them():
+    mine = nevh.Integrator("mine", kick=[0.5, 0.5], drift=[1])
+    step = nevh.Integrator("leapfrog", step=leapfrog)
+    table = nevh.compare("pendulum", ["verlet", mine, step], dt=[0.1, 0.05], t_end=20)
+    assert sorted(table["integrator"]) == ["leapfrog"] * 2 + ["mine"] * 2 + ["verlet"] * 2
+    of = {(row["integrator"], row["dt"]): row for row in table}
+    for dt in (0.1, 0.05):
+        verlet = of["verlet", dt]
+        for name in ("mine", "leapfrog"):
+            for column in ("max_energy_error", "rms_energy_error", "state_error"):
+                assert abs(of[name, dt][column] / verlet[column] - 1) < 1e-3, (name, column)
+            assert of[name, dt]["order"] == 2 and of[name, dt]["symplectic"] == "yes"
+    alone = nevh.compare("pendulum", step, dt=0.1, t_end=5)
+    assert [row["integrator"] for row in alone] == ["leapfrog"]
+    raised(nevh.Refused, "is a function", nevh.cost, "pendulum", step)
+    array = nevh.sweep("pendulum", {"phi": [1, 2]}, "state", mine, dt=0.1, t_end=5)
+    known = nevh.sweep("pendulum", {"phi": [1, 2]}, "state", "verlet", dt=0.1, t_end=5)
+    assert (array == known).all()
+    assert any("mine: order 2" in note for note in nevh.check("pendulum", mine).notes)
+
+
+def test_functions():
+    """Measured order, symmetry and symplecticity; Heun's method has neither."""
+    one = nevh.Integrator("leapfrog", step=leapfrog)
+    two = nevh.Integrator("trapezium", step=trapezium)
+    three = nevh.Integrator("rule", step=midpoint)
+    assert (one.order, one.symmetric, one.symplectic) == (2, True, True)
+    assert (two.order, two.symmetric, two.symplectic) == (2, False, False)
+    assert (three.order, three.symmetric, three.symplectic) == (2, True, True)
+    for own, name in ((one, "verlet"), (two, "heun"), (three, "midpoint")):
+        a, b = (nevh.solve(FORMULA, (0, 10), [1, 0], method, dt=0.1) for method in (own, name))
+        assert abs(a.y - b.y).max() < 1e-9 and a.verdict in (b.verdict, "undecided")
+    mixed = "(1 + x^2)*p_x^2/2 + x^2/2"
+    a, b = (nevh.solve(mixed, (0, 5), [1, 0], method, dt=0.05) for method in
+            (three, "midpoint"))
+    assert abs(a.y - b.y).max() < 1e-9
+    raised(nevh.Refused, "is no sum", nevh.solve, mixed, (0, 1), [1, 0], one, dt=0.1)
+    fails = nevh.Integrator("wild", step=lambda force, t, q, p, h: (q / 0.0, p))
+    with np.errstate(all="ignore"):
+        raised(nevh.Failed, "not finite", nevh.solve, FORMULA, (0, 1), [1, 0], fails, dt=0.1)
+
+
+def test_wrong():
+    for kind, text, named in (
+            (TypeError, "none of them", {}), (TypeError, "drift is a list", {"kick": [1]}),
+            (nevh.Refused, "add up to 1.1", dict(kick=[.5, .6], drift=[1])),
+            (TypeError, "kick is a list", dict(kick="x", drift=[1])),
+            (nevh.Refused, "row 1 of a", dict(a=[[1, 2]], b=[1])),
+            (TypeError, "compose is", dict(compose=5)),
+            (nevh.Refused, "did you mean verlet", dict(compose={"verlat": [1]})),
+            (TypeError, "step is a function", dict(step=5)),
+            (nevh.Refused, "nan", dict(kick=[float("nan")], drift=[1])),
+            (TypeError, "kick and drift and a and b", dict(kick=[1], drift=[1], b=[1]))):
+        raised(kind, text, nevh.Integrator, "x", **named)
+    raised(nevh.Refused, "take another name", nevh.Integrator, "verlet", kick=[1], drift=[1])
+    for step, text in ((lambda force, t, q, p, h: None, "not q and p"),
+                       (lambda force, t, q, p, h: (q,), "not q and p"),
+                       (lambda force, t, q, p, h: ([1, 2], [1, 2]), "1 numbers each")):
+        raised(nevh.Refused, text, nevh.solve, FORMULA, (0, 1), [1, 0],
+               nevh.Integrator("x", step=step), dt=0.1)
+    raised(TypeError, "step takes", nevh.solve, FORMULA, (0, 1), [1, 0],
+           nevh.Integrator("x", step=lambda q: q), dt=0.1)
+
+
+for name, test in sorted(globals().items()):
+    if name.startswith("test_"):
+        test()
+        print("passed", name)
