@@ -9,6 +9,7 @@ SPDX-License-Identifier: GPL-3.0-or-later
 import os
 import re
 import sys
+import tempfile
 
 sys.dont_write_bytecode = True
 names, arrays = {}, True
@@ -33,12 +34,17 @@ def blocks_of(path):
             if re.search(r"\bnevh\.\w+\(|^import nevh", block) and "@dots" not in block]
 
 
-ran = 0
-for path in (os.path.join(sys.argv[1], name) for name in ("README.md", "doc/nevh.texi")):
+os.environ.update((name, os.path.abspath(os.environ[name])) for name in
+                  ("NEVH_LIBRARY", "NEVH_COMMAND", "NEVH_SCENES") if name in os.environ)
+sources, ran = os.path.abspath(sys.argv[1]), 0
+folder = tempfile.TemporaryDirectory()
+os.chdir(folder.name)  # some of them write a file
+for path in (os.path.join(sources, name) for name in ("README.md", "doc/nevh.texi")):
     for block in blocks_of(path):
         if not arrays and re.search(r"\b(numpy|solve_ivp)\b", block):
             continue
         exec(compile(block, path, "exec"), names)
         ran += 1
+os.chdir(sources)
 print("%d blocks of Python ran" % ran)
 assert ran >= 3, "there are fewer than there were"
