@@ -173,7 +173,6 @@ libnevh_core_la_SOURCES = \
 	lib/native/runge_kutta_text.c \
 	lib/native/nystrom_text.c \
 	lib/native/stage_text.c \
-	lib/native/stage_lanes_text.c \
 	lib/native/noise_text.c \
 	lib/native/energy_text.c \
 	lib/native/tao_text.c \
@@ -323,13 +322,19 @@ step_texts = integrators/kernels/splitting_step.h \
 	integrators/kernels/adaptive_verlet_step.h \
 	lib/work/pace.h \
 	integrators/kernels/adaptive_step.h \
-	lib/run/fraction_private.h
+	lib/run/fraction_private.h \
+	lib/native/steps/adaptive_driver.h \
+	lib/native/steps/adaptive_verlet_driver.h \
+	lib/native/steps/implicit_driver.h \
+	lib/native/steps/implicit_orbit.h \
+	lib/native/steps/implicit_lanes.h \
+	lib/native/steps/entry.h
 nodist_libnevh_core_la_SOURCES = lib/native/kernel_texts.c
 lib/native/kernel_texts.c: lib/local.mk lib/native/kernel_texts.awk $(step_texts)
 	$(MKDIR_P) lib/native
 	cd $(srcdir) && $(AWK) -f lib/native/kernel_texts.awk $(step_texts) \
 	  >$(abs_builddir)/$@.new && mv $(abs_builddir)/$@.new $(abs_builddir)/$@
-EXTRA_DIST += lib/native/kernel_texts.awk
+EXTRA_DIST += lib/native/kernel_texts.awk $(step_texts)
 CLEANFILES += lib/native/kernel_texts.c
 
 # -version-info C:R:A, at each release, beginning with that of the last one:

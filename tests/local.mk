@@ -188,6 +188,7 @@ all_suites = $(suites) $(memory_suites)
 endif
 
 dist_check_SCRIPTS = \
+	tests/native/step_headers.sh \
 	tests/build/symbols.sh \
 	tests/build/arrows.sh \
 	tests/build/names.sh \
@@ -261,6 +262,8 @@ dist_check_SCRIPTS = \
 	tests/robust/valgrind.sh
 
 EXTRA_DIST += tests/support/constants.py tests/python/commands.py tests/python/own.py tests/python/wrong_calls.py tests/python/hamiltonians.py tests/python/module.py tests/python/programs.py tests/python/same_states.py tests/python/traced.py tests/build/outside.c tests/robust/long_sweeps.sh tests/support/interrupt.c tests/support/starve.c tests/support/rescale.awk tests/support/formula.h tests/support/formula_terms.h tests/support/memory.h tests/support/native.h tests/support/scene.h tests/support/shipped.h \
+EXTRA_DIST += tests/support/constants.py tests/python/commands.py tests/python/wrong_calls.py tests/python/hamiltonians.py tests/python/module.py tests/python/programs.py tests/python/same_states.py tests/python/traced.py tests/build/outside.c tests/robust/long_sweeps.sh tests/support/interrupt.c tests/support/starve.c tests/support/rescale.awk tests/support/formula.h tests/support/formula_terms.h tests/support/memory.h tests/support/native.h tests/support/scene.h tests/support/shipped.h \
+EXTRA_DIST += tests/native/step_header.c tests/support/constants.py tests/python/module.py tests/python/programs.py tests/python/same_states.py tests/build/outside.c tests/robust/long_sweeps.sh tests/support/interrupt.c tests/support/starve.c tests/support/rescale.awk tests/support/formula.h tests/support/formula_terms.h tests/support/memory.h tests/support/native.h tests/support/scene.h tests/support/shipped.h \
 	tests/support/nevh_support.sh tests/support/nevh_interrupt.sh \
 	tests/support/browser.mjs tests/support/chromium.mjs tests/support/firefox.mjs \
 	tests/support/websocket.mjs tests/support/try_page.mjs tests/support/try_axe.mjs \

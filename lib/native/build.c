@@ -378,7 +378,7 @@ static void *compile(nevh__background *b) {
 
 static void *await_compiler(void *data) {
     nevh__background *b = data;
-    nevh__native_steps steps = NULL;
+    nevh__compiled_steps steps = NULL;
     if (take_lock(b)) {
         b->library = open_kept(&b->p, b->why);
         if (!b->library && !atomic_load(&b->unwanted))

@@ -279,7 +279,7 @@ bool nevh__native_pays(const nevh_work *w) {
 }
 
 static bool take_steps(nevh__native *x) {
-    nevh__native_steps steps;
+    nevh__compiled_steps steps;
     if (x->compiler)
         return true;
     *(void **)&steps = dlsym(x->library, "nevh_native_steps");

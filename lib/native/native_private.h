@@ -20,15 +20,15 @@
             ones sweeps of each orbit, how often noise was asked for, and sweeps
             evaluated, also of orbits that are done; of those that adapt slopes at
             states, and trials */
-typedef size_t (*nevh__native_steps)(const double numbers[], double weights[],
-                                     double times[], size_t operations,
-                                     double t0, double h, size_t from,
-                                     size_t steps, double q[], double p[],
-                                     double memory[], size_t counted[3],
-                                     double room[]);
+typedef size_t (*nevh__compiled_steps)(const double numbers[], double weights[],
+                                       double times[], size_t operations,
+                                       double t0, double h, size_t from,
+                                       size_t steps, double q[], double p[],
+                                       double memory[], size_t counted[3],
+                                       double room[]);
 
 /* Those that are taken, which appear once a compiler in the background is done. */
-typedef _Atomic(nevh__native_steps) nevh__steps_at_work;
+typedef _Atomic(nevh__compiled_steps) nevh__steps_at_work;
 typedef struct nevh__background nevh__background;
 
 enum { NEVH__WHY_NATIVE = 400 };

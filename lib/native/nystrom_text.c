@@ -45,8 +45,8 @@ static const char stages_begin[] =
     "        .slopes = slopes, .owner = &owner};\n"
     "    NEVH__EACH(k, 1, DOF) {\n"
     "        steps[k] = h;\n"
-    "        rest[k] = $5[k];\n"
-    "        gain[k] = h * h * $6[k];\n"
+    "        rest[k] = AT_REST[k];\n"
+    "        gain[k] = h * h * INVERSE[k];\n"
     "    }\n";
 
 static const char stages_apart[] =
@@ -156,7 +156,7 @@ bool nevh__write_nystrom(nevh__writer *w, nevh_work *work) {
     const nevh_nystrom *table = work->integrator->table;
     nevh__nystrom_kinetic kinetic = nevh__nystrom_kinetic_of(work);
     bool adapts = nevh__adapts(work);
-    char rest[NEVH__NAME], inverse[NEVH__NAME], count[24];
+    char count[24];
     if (w->width > 1) {
         w->refusal = "orbits stand side by side";
         return false;
@@ -167,8 +167,8 @@ bool nevh__write_nystrom(nevh__writer *w, nevh_work *work) {
     nevh__write_lines(w, nevh__stage_sums_text);
     nevh__write_lines(w, nevh__nystrom_step_text);
     write_tables(w, table, adapts);
-    nevh__write_array(w, "at_rest", "N", work->n, kinetic.rest, rest);
-    nevh__write_array(w, "inverse", "N", work->n, kinetic.inverse, inverse);
+    nevh__write_array(w, "AT_REST", "N", work->n, kinetic.rest);
+    nevh__write_array(w, "INVERSE", "N", work->n, kinetic.inverse);
     nevh__write(w, "\n");
     nevh__write_filled(
         w, owner,
@@ -176,12 +176,9 @@ bool nevh__write_nystrom(nevh__writer *w, nevh_work *work) {
     nevh__write_filled(w, slopes,
                        (const char *const[]){w->readable ? "" : "o->N, "});
     snprintf(count, sizeof count, "%zu", table->stages);
-    const char *const words[] = {w->readable ? "" : "N, ",
-                                 count,
+    const char *const words[] = {w->readable ? "" : "N, ", count,
                                  kinetic.diagonal ? "true" : "false",
-                                 kinetic.moves ? "true" : "false",
-                                 rest,
-                                 inverse};
+                                 kinetic.moves ? "true" : "false"};
     if (adapts) {
         write_trial(w, table->stages, words);
         nevh__write_adaptive(w, work, nevh__adaptive_rule_of(work));

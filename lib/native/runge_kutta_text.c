@@ -22,7 +22,7 @@ static const char slope[] =
 /* dp/dt = -(dH/dq + rate p). */
 static const char friction[] =
     "    NEVH__EACH(k, 1, DOF)\n"
-    "        slopes[DOF + k] += $1[k$2] * x->point[DOF + k];\n";
+    "        slopes[DOF + k] += RATES[k$1] * x->point[DOF + k];\n";
 
 static const char owner[] =
     "struct nevh__runge_kutta_owner {\n"
@@ -149,12 +149,10 @@ static void write_trial(nevh__writer *w, size_t stages) {
 
 static void write_slope(nevh__writer *w, const nevh_work *work) {
     nevh__writer part = {0};
-    char rates[NEVH__NAME];
     if (work->friction) {
-        nevh__write_array(w, "rates", "o->N", work->n, work->friction, rates);
-        nevh__write_filled(
-            &part, friction,
-            (const char *const[]){rates, w->group > 1 ? " % ONE" : ""});
+        nevh__write_array(w, "RATES", "o->N", work->n, work->friction);
+        nevh__write_filled(&part, friction,
+                           (const char *const[]){w->group > 1 ? " % ONE" : ""});
         w->failed |= part.failed;
     }
     bool several = w->group > 1; /* both slopes have much in common */

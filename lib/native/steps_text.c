@@ -14,6 +14,7 @@ static const char needs[] =
     "#define NULL ((void *)0)\n"
     "#define INFINITY __builtin_inf()\n"
     "#define NEVH__INLINE INLINE\n"
+    "#define NEVH__COMPILED(...) __VA_ARGS__\n"
     "#define NEVH__KNOWN_COUNT NEVH_UNROLL\n"
     "#define NEVH__EACH(i, lanes, size) \\\n"
     "    NEVH_UNROLL for (size_t i = 0; i < (size); i += (lanes))\n";
@@ -193,36 +194,76 @@ static const char driver_for_readers[] =
     "    }\n"
     "    return done;\n}\n";
 
-/* What steps have reached is stored, and the next one is the kernel's. */
-static const char driver_head[] =
-    "size_t nevh_native_steps(const double *restrict N, double *restrict W,\n"
-    "        double *restrict T, size_t operations, double t0, double h,\n"
-    "        size_t from, size_t steps, double *restrict Q,\n"
-    "        double *restrict P, double *restrict M, size_t *counted,\n"
-    "        double *room) {\n";
-static const char driver_head_for_readers[] =
-    "/* Takes up to `steps` steps of h, the first being number `from`, and\n"
-    "   returns how many of them it could take. */\n"
-    "static size_t advance(double t0, double h, size_t from, size_t steps,\n"
-    "                      double *Q, double *P, double *M) {\n";
 static bool begins(const char *line, const char *word) {
     return strncmp(line, word, strlen(word)) == 0;
 }
 
-/* Conditions on NEVH__FOR_READERS are resolved, hints to compilers left out. */
+/* Whether the condition of a line "#ifdef NAME" or "#ifndef NAME" holds. */
+static bool holds(const nevh__writer *w, const char *line) {
+    static const char readers[] = "NEVH__FOR_READERS";
+    static const char shape[] = "NEVH__ONE_SHAPE";
+    const char *name = line + strcspn(line, " ") + 1;
+    bool defined = begins(name, readers) || begins(name, shape);
+    for (size_t i = 0; i < w->form_count; i++)
+        defined |= begins(name, w->forms[i]);
+    return defined == begins(line, "#ifdef");
+}
+
+/* The conditions that are open, and the outermost of them that does not hold; 0:
+   all do. */
+typedef struct {
+    unsigned open, skipped;
+} conditions;
+
+static bool take_condition(const nevh__writer *w, conditions *c,
+                           const char *line) {
+    if (begins(line, "#if")) {
+        c->open++;
+        if (!c->skipped && !holds(w, line))
+            c->skipped = c->open;
+    } else if (begins(line, "#else")) {
+        c->skipped = c->skipped == c->open ? 0
+                     : c->skipped          ? c->skipped
+                                           : c->open;
+    } else if (begins(line, "#endif")) {
+        c->skipped = c->skipped == c->open ? 0 : c->skipped;
+        c->open--;
+    } else
+        return false;
+    return true;
+}
+
+/* A line without NEVH__COMPILED(...), which ends in it, and the blank beside that;
+   nothing where no more is left. */
+static void write_line(nevh__writer *w, const char *line) {
+    static const char word[] = "NEVH__COMPILED(";
+    size_t begin = w->used;
+    const char *at = strstr(line, word);
+    bool had = at;
+    for (; at; at = strstr(line, word)) {
+        int open = 1;
+        nevh__write(w, "%.*s", (int)(at - line), line);
+        for (line = at + sizeof word - 1; *line && open > 0; line++)
+            open += (*line == '(') - (*line == ')');
+        if (*line == ' ')
+            line++;
+        else if (w->used > begin && w->text[w->used - 1] == ' ')
+            w->text[--w->used] = '\0';
+    }
+    nevh__write(w, "%s", line);
+    if (had && strspn(w->text + begin, " \n") == w->used - begin)
+        w->used = begin;
+}
+
+/* Conditions are resolved, hints to compilers left out. */
 static void write_for_readers(nevh__writer *w, const char *const lines[]) {
-    bool skips = false;
-    for (; *lines; lines++) {
-        const char *word = *lines + strspn(*lines, " ");
-        if (begins(word, "#if"))
-            skips = begins(word, "#ifndef");
-        else if (begins(word, "#else"))
-            skips = !skips;
-        else if (begins(word, "#endif"))
-            skips = false;
-        else if (!skips && strcmp(word, "NEVH_UNROLL\n") != 0 &&
-                 strcmp(word, "NEVH__KNOWN_COUNT\n") != 0)
-            nevh__write(w, "%s", *lines);
+    conditions c = {0, 0};
+    for (; *lines && !w->failed; lines++) {
+        const char *text = *lines + strspn(*lines, " ");
+        if (!take_condition(w, &c, text) && !c.skipped &&
+            strcmp(text, "NEVH_UNROLL\n") != 0 &&
+            strcmp(text, "NEVH__KNOWN_COUNT\n") != 0)
+            write_line(w, *lines);
     }
 }
 
@@ -233,6 +274,11 @@ void nevh__write_lines(nevh__writer *w, const char *const lines[]) {
     }
     for (; *lines; lines++)
         nevh__write(w, "%s", *lines);
+}
+
+void nevh__write_entry(nevh__writer *w) {
+    if (!w->readable)
+        nevh__write_lines(w, nevh__entry_text);
 }
 
 const char *nevh__number_type(const nevh__writer *w) {
@@ -312,6 +358,8 @@ static void write_long_driver(nevh__writer *w) {
 }
 
 void nevh__write_table(nevh__writer *w) {
+    if (w->readable)
+        return;
     if (w->by_lane)
         nevh__write(w, "#define TABLE(b) (N + (b) * (size_t)%zu)\n", w->count);
     else
@@ -330,10 +378,6 @@ void nevh__write_driver(nevh__writer *w, bool keeps) {
         nevh__write_table(w);
         nevh__write(w, "%s", driver);
     }
-}
-
-void nevh__write_driver_head(nevh__writer *w) {
-    nevh__write(w, "%s", w->readable ? driver_head_for_readers : driver_head);
 }
 
 void nevh__write_sum(nevh__writer *w, nevh__sums_text *sums,

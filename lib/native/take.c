@@ -39,7 +39,7 @@ static size_t count_kept(const nevh_work *w) {
 static size_t take(const nevh_work *w, double t0, double h, size_t from,
                    size_t steps, double q[], double p[], size_t counted[3]) {
     const nevh__native *x = w->native;
-    nevh__native_steps compiled = x->steps;
+    nevh__compiled_steps compiled = x->steps;
     return compiled(x->numbers, x->weights, x->times, x->kicks + x->drifts, t0,
                     h, from, steps, q, p, w->memory, counted,
                     x->room ? nevh__aligned(x->room) : NULL);

@@ -48,7 +48,7 @@ static const char step[] =
     "    struct nevh__tao_owner owner = {$1&bad};\n"
     "    nevh__tao_step z = {\n"
     "        .size = DOF, .width = 1, .parts = PARTS, .lengths = W + 1,\n"
-    "        .ratio = $2, .start_q = y, .start_p = y + DOF,\n"
+    "        .ratio = RATIOS, .start_q = y, .start_p = y + DOF,\n"
     "        .compensation = lost, .q = moved, .p = moved + DOF,\n"
     "        .x = moved + 2 * DOF, .y = moved + 3 * DOF,\n"
     "        .a = {points, points + DOF, slopes, slopes + DOF},\n"
@@ -56,14 +56,14 @@ static const char step[] =
     "              slopes + 3 * DOF},\n"
     "        .owner = &owner};\n"
     "    if (W[0] != h)\n"
-    "        nevh__tao_prepare(PARTS / 2, weights, $3, h, W + 1);\n"
+    "        nevh__tao_prepare(PARTS / 2, weights, OMEGA, h, W + 1);\n"
     "    W[0] = h;\n"
     "    NEVH__EACH(k, 1, 2 * DOF) {\n"
     "        moved[k] = (nevh__number){0};\n"
     "        moved[2 * DOF + k] = kept[k];\n"
     "        slopes[k] = kept[2 * DOF + k];\n"
     "    }\n"
-    "$4"
+    "$2"
     "    nevh__tao_take(&z, t);\n"
     "    NEVH__EACH(k, 1, 2 * DOF) {\n"
     "        nevh__number change = moved[k] + lost[k], next = y[k] + change;\n"
@@ -71,7 +71,7 @@ static const char step[] =
     "        lost[k] = nevh__roundoff(next, y[k], change);\n"
     "        y[k] = next;\n"
     "    }\n"
-    "$5"
+    "$3"
     "    return bad;\n}\n\n";
 static const char keeping[] = "    NEVH__EACH(k, 1, 2 * DOF) {\n"
                               "        kept[k] = moved[2 * DOF + k];\n"
@@ -93,10 +93,9 @@ static const char keeping_for_readers[] =
 
 static void write_step(nevh__writer *w, const nevh_work *work) {
     const nevh__binding *binding = work->plan;
-    char ratio[NEVH__NAME], omega[NEVH__NAME];
     bool plain = w->readable;
-    nevh__write_array(w, "ratios", "N", work->n, binding->ratio, ratio);
-    nevh__write_number(w, binding->omega, omega);
+    nevh__write_array(w, "RATIOS", "N", work->n, binding->ratio);
+    nevh__write_constant(w, "OMEGA", binding->omega);
     if (plain)
         nevh__write(w, "\n%s", step_for_readers);
     else {
@@ -104,11 +103,10 @@ static void write_step(nevh__writer *w, const nevh_work *work) {
         nevh__write_step_head(w);
         nevh__write(w, "{\n");
     }
-    nevh__write_filled(
-        w, step,
-        (const char *const[]){plain ? "" : "N, ", ratio, omega,
-                              plain ? first_for_readers : "",
-                              plain ? keeping_for_readers : keeping});
+    nevh__write_filled(w, step,
+                       (const char *const[]){
+                           plain ? "" : "N, ", plain ? first_for_readers : "",
+                           plain ? keeping_for_readers : keeping});
 }
 
 bool nevh__write_tao(nevh__writer *w, nevh_work *work) {

@@ -141,18 +141,31 @@ void nevh__write_filled(nevh__writer *w, const char *text,
     }
 }
 
-void nevh__write_array(nevh__writer *w, const char *what, const char *table,
-                       size_t count, const double x[], char name[NEVH__NAME]) {
+void nevh__write_array(nevh__writer *w, const char *name, const char *table,
+                       size_t count, const double x[]) {
     if (w->readable) {
         char begin[60];
-        snprintf(begin, sizeof begin, "static const double %.30s", what);
+        snprintf(begin, sizeof begin, "static const double %.30s", name);
         nevh__write_numbers(w, begin, count, x);
-        snprintf(name, NEVH__NAME, "%.30s", what);
         return;
     }
-    snprintf(name, NEVH__NAME,
-             w->loops ? "((const wide *)(%.8s + %zu))" : "(%.8s + %zu)", table,
-             w->count);
+    nevh__write(w, "#define %s (%s(%s + %zu))\n", name,
+                w->loops ? "(const wide *)" : "", table, w->count);
     for (size_t k = 0; k < (w->loops ? nevh__padded(count) : count); k++)
         nevh__writer_append(w, k < count ? x[k] : 0);
+}
+
+void nevh__write_constant(nevh__writer *w, const char *name, double x) {
+    char number[NEVH__NAME];
+    nevh__write_number(w, x, number);
+    nevh__write(
+        w, w->readable ? "static const double %s = %s;\n" : "#define %s %s\n",
+        name, number);
+}
+
+void nevh__write_form(nevh__writer *w, const char *name) {
+    if (w->readable && w->form_count < NEVH__MOST_FORMS)
+        w->forms[w->form_count++] = name;
+    else
+        nevh__write(w, "#define %s\n", name);
 }

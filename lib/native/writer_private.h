@@ -10,7 +10,7 @@
 #include "expression/tape_private.h"
 #include "gradient/field_private.h"
 
-enum { NEVH__NAME = 40, NEVH__MOST_SHARED = 32 };
+enum { NEVH__NAME = 40, NEVH__MOST_SHARED = 32, NEVH__MOST_FORMS = 8 };
 
 /* Numbers that stand in the table once, and where. */
 typedef struct {
@@ -47,6 +47,9 @@ typedef struct {
     bool own_time;     /* steps of a program take times of their own */
     size_t rows;       /* of DOF vectors, for them */
     bool readable;     /* numbers stand in the text, functions are libm's */
+    const char
+        *forms[NEVH__MOST_FORMS]; /* for readers: names that are defined */
+    size_t form_count;
     size_t n;
     char (*names)[NEVH__NAME]; /* of q, and of p, in a text for readers; "": it
                                   has none that C takes */
@@ -77,11 +80,14 @@ size_t nevh__writer_share(nevh__writer *, size_t count, const double x[]);
 /* NAME[count] = {...}; as C has it. */
 void nevh__write_numbers(nevh__writer *, const char *name, size_t count,
                          const double x[]);
-/* An array of numbers, "static const double WHAT", or of the table.
-   table  what that is called where the array is read
-   name   out: what it is called */
-void nevh__write_array(nevh__writer *, const char *what, const char *table,
-                       size_t count, const double x[], char name[NEVH__NAME]);
+/* An array of numbers, "static const double NAME", or a part of the table, whose
+   name is `table` where the array is read. */
+void nevh__write_array(nevh__writer *, const char *name, const char *table,
+                       size_t count, const double x[]);
+/* A number: the same, or of the table N. */
+void nevh__write_constant(nevh__writer *, const char *name, double);
+/* A name that conditions of headers ask for, "#ifdef NAME". */
+void nevh__write_form(nevh__writer *, const char *name);
 void nevh__write_lines(nevh__writer *, const char *const lines[]);
 /* Variables get names in C like those of the coordinates, n; false when memory
    is out. */
@@ -103,8 +109,8 @@ static inline bool nevh__has_lanes(const nevh__writer *w) {
 /* "double", or what stands side by side. */
 const char *nevh__number_type(const nevh__writer *);
 
-/* Kernels' headers, line by line, ended by NULL: made from them by
-   kernel_texts.awk. */
+/* Headers of kernels, and of steps/, line by line, ended by NULL: made from them
+   by kernel_texts.awk.  What NEVH__COMPILED stands for is left out for readers. */
 extern const char *const nevh__splitting_step_text[];
 extern const char *const nevh__stage_progress_text[];
 extern const char *const nevh__stage_judge_text[];
@@ -116,6 +122,12 @@ extern const char *const nevh__tao_step_text[];
 extern const char *const nevh__adaptive_verlet_step_text[];
 extern const char *const nevh__pace_text[];
 extern const char *const nevh__adaptive_step_text[];
+extern const char *const nevh__adaptive_driver_text[];
+extern const char *const nevh__adaptive_verlet_driver_text[];
+extern const char *const nevh__implicit_driver_text[];
+extern const char *const nevh__implicit_orbit_text[];
+extern const char *const nevh__implicit_lanes_text[];
+extern const char *const nevh__entry_text[];
 extern const char *const nevh__fraction_text[];
 
 /* How C text has numbers side by side. */
@@ -194,10 +206,8 @@ void nevh__write_unkept(nevh__writer *);
 void nevh__write_driver(nevh__writer *, bool keeps);
 /* TABLE(b), the numbers of a vector of orbits; none is added later. */
 void nevh__write_table(nevh__writer *);
-/* That function up to its body, of a family whose steps write to Q, P and M. */
-void nevh__write_driver_head(nevh__writer *);
-/* Steps of orbits side by side; scales: the name of the coordinates' scales. */
-void nevh__write_stage_lanes(nevh__writer *, const char *scales);
+/* That function by the text's own function advance. */
+void nevh__write_entry(nevh__writer *);
 
 /* Functions kick_slope and drift_slope
        NUMBER NAME(const double *N, double t, const NUMBER *q,

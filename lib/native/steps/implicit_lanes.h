@@ -1,0 +1,187 @@
+/* nevh: a step of orbits side by side, for implicit_driver.h, which has what this
+   text needs.  Those that are done wait for the others.  Values are counted as the
+   kernel takes them, which sweeps the last FEW one by one.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_IMPLICIT_LANES_H
+#define NEVH_IMPLICIT_LANES_H
+
+#include "native/steps/implicit_driver.h"
+
+typedef struct {
+    double y[2 * DOF * 8], lost[2 * DOF * 8], slopes[2 * DOF * STRIDE];
+    double steps[8], first_change[8];
+} block;
+
+typedef struct {
+    double points[2 * DOF * STRIDE], gradient[2 * DOF * STRIDE];
+    double before[UNKNOWN * STRIDE], least[UNKNOWN * STRIDE];
+    double past[UNKNOWN * PAST * STRIDE], times[STRIDE], products[STRIDE];
+    double unit[2 * DOF * 8], scale[2 * DOF * 8], lowest[8];
+} sweeps_room;
+
+NEVH__INLINE void load_block(const double *N, double h, const double *Q,
+                             const double *P, const double *M, sweeps_room *r,
+                             block *to) {
+    for (size_t k = 0; k < 2 * DOF; k++) {
+        const double *from = (k < DOF ? Q : P) + k % DOF * WIDTH;
+        NEVH_LANES(i, 8) {
+            double one = from[i], size = fabs(one),
+                   most = SCALES[k * SCALES_APART + (SCALES_APART > 1 ? i : 0)];
+            double scale = size > most ? size : most;
+            to->y[k * 8 + i] = one;
+            to->lost[k * 8 + i] = M[k * WIDTH + i];
+            r->scale[k * 8 + i] = scale;
+            r->unit[k * 8 + i] = fabs(h) / scale;
+        }
+    }
+    for (size_t i = 0; i < 8; i++)
+        to->steps[i] = M[H_AT * WIDTH + i] == h ? M[STEPS_AT * WIDTH + i] : 0;
+    for (size_t k = 0; k < UNKNOWN * KEPT_STAGES; k++)
+        NEVH_LANES(i, 8) {
+            r->past[k * 8 + i] = M[(SLOPES_AT + k) * WIDTH + i];
+        }
+}
+
+NEVH__INLINE bool add_block(const step_weights *w, block *to) {
+    double check[8];
+    NEVH_LANES(i, 8) {
+        check[i] = 0;
+    }
+    for (size_t k = 0; k < 2 * DOF; k++) {
+        nevh__stage_advance(STAGES, order, k < DOF ? w->plus : w->minus, 8, 8,
+                            to->slopes + k * STRIDE, to->y + k * 8,
+                            to->lost + k * 8);
+        NEVH_LANES(i, 8) {
+            check[i] += to->y[k * 8 + i] - to->y[k * 8 + i];
+        }
+    }
+    return nevh__sum_lanes(check) == 0;
+}
+
+NEVH__INLINE bool take_block(const double *N, const step_weights *w, double t,
+                             double h, const double *Q, const double *P,
+                             const double *M, block *to, size_t *counted) {
+    sweeps_room r;
+    double unknown = 0, level[8];
+    nevh__vector bad = {0};
+    size_t left = 8;
+    bool settled[8];
+    nevh__stage_lane lane[8];
+    nevh__stage_progress made[8];
+    struct nevh__stage_owner owner = {N, r.times, &bad};
+    nevh__stage_step x = {.n = DOF,
+                          .stages = STAGES,
+                          .row = ROW,
+                          .stride = STRIDE,
+                          .half = DOF * STRIDE,
+                          .partitioned = PARTITIONED,
+                          .unchecked = true,
+                          .mu_q = mu_q,
+                          .mu_p = mu_p,
+                          .to_q = w->to_q,
+                          .to_p = w->to_p,
+                          .q = to->y,
+                          .p = to->y + DOF * 8,
+                          .compensation = to->lost,
+                          .products = r.products,
+                          .points = r.points,
+                          .gradient = r.gradient,
+                          .owner = &owner};
+    nevh__stage_changes changes = {FIRST,    UNKNOWN, r.unit,
+                                   r.before, r.least, r.lowest};
+    for (size_t i = 0; i < 8; i++) {
+        if (M[HOLD_AT * WIDTH + i] > 0)
+            return false;
+        nevh__stage_forget(&lane[i]);
+        r.lowest[i] = INFINITY;
+        level[i] = -1;
+        settled[i] = false;
+    }
+    load_block(N, h, Q, P, M, &r, to);
+    NEVH_LANES(i, STRIDE) {
+        r.times[i] = t + nodes[i / 8] * h;
+    }
+    nevh__stage_begin_sweeps(&x, &changes, 8, long_guess, KEPT_STAGES, r.past,
+                             PAST * STRIDE);
+    for (size_t i = 0; i < 8; i++)
+        if (to->steps[i] < PAST)
+            nevh__stage_begin_lane(&x, &changes, i, guess,
+                                   to->steps[i] > 0 ? STAGES : 0, r.past,
+                                   PAST * STRIDE);
+    for (size_t sweeps = 1; left > 0; sweeps++) {
+        counted[2] += left > FEW ? 8 : left;
+        if (nevh__stage_map(&x, 8))
+            return false;
+        nevh__stage_compare_sweep(&x, &changes, 8, made);
+        for (size_t i = 0; i < 8; i++) {
+            struct nevh__stage_judge_owner judge_owner = {
+                N, to->y + i, r.scale + i, t,
+                h, &level[i], &unknown,    &counted[1]};
+            nevh__stage_judged judged = {
+                0, true, NOISY, NEWTON, UNKNOWN * STAGES, &judge_owner};
+            nevh__stage_state state;
+            if (settled[i])
+                continue;
+            if (!(made[i].change < INFINITY))
+                return false;
+            state = nevh__stage_judge_fixed_point(&judged, &lane[i], &made[i]);
+            if (state == NEVH__STUCK ||
+                (state == NEVH__GO_ON && sweeps == NEVH__STAGE_SWEEPS))
+                return false;
+            if (state == NEVH__GO_ON)
+                continue;
+            settled[i] = true;
+            to->first_change[i] = lane[i].first;
+            left--;
+            counted[0] += sweeps;
+            for (size_t k = i; k < 2 * DOF * STRIDE; k += 8)
+                to->slopes[k] = r.gradient[k];
+        }
+    }
+    return !is_bad(bad) && unknown == 0 && add_block(w, to);
+}
+
+NEVH__INLINE void store_block(double h, const block *from, double *Q, double *P,
+                              double *M) {
+    for (size_t k = 0; k < 2 * DOF; k++) {
+        double *to = (k < DOF ? Q : P) + k % DOF * WIDTH;
+        NEVH_LANES(i, 8) {
+            to[i] = from->y[k * 8 + i];
+            M[k * WIDTH + i] = from->lost[k * 8 + i];
+        }
+    }
+    for (size_t k = 0; k < UNKNOWN; k++) {
+        double sign = FIRST + k < DOF ? 1 : -1;
+        double *kept = M + (SLOPES_AT + k * KEPT_STAGES) * WIDTH;
+        for (size_t j = KEPT_STAGES; j-- > 0;)
+            NEVH_LANES(i, 8) {
+                kept[j * WIDTH + i] =
+                    j < STAGES
+                        ? sign * from->slopes[(FIRST + k) * STRIDE + j * 8 + i]
+                        : kept[(j - STAGES) * WIDTH + i];
+            }
+    }
+    for (size_t i = 0; i < 8; i++) {
+        M[STEPS_AT * WIDTH + i] =
+            nevh__stage_remember(from->steps[i], PAST, from->first_change[i]);
+        M[H_AT * WIDTH + i] = h;
+    }
+}
+
+NEVH__INLINE bool take_step(const double *N, double t, double h, double *Q,
+                            double *P, double *M, const step_weights *w,
+                            size_t *counted) {
+    block next[BLOCKS];
+    size_t found[3] = {0, 0, 0};
+    for (size_t b = 0; b < BLOCKS; b++)
+        if (!take_block(TABLE(b), w, t, h, Q + 8 * b, P + 8 * b, M + 8 * b,
+                        &next[b], found))
+            return false;
+    for (size_t b = 0; b < BLOCKS; b++)
+        store_block(h, &next[b], Q + 8 * b, P + 8 * b, M + 8 * b);
+    for (size_t i = 0; i < 3; i++)
+        counted[i] += found[i];
+    return true;
+}
+
+#endif

@@ -1,0 +1,130 @@
+/* nevh: a step of one orbit, for implicit_driver.h, which has what this text needs.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_IMPLICIT_ORBIT_H
+#define NEVH_IMPLICIT_ORBIT_H
+
+#include "native/steps/implicit_driver.h"
+
+/* The new state from the slopes, which the next step continues. */
+NEVH__INLINE bool add_step(const step_weights *w, const double *gradient,
+                           double first_change, double *y, double *M,
+                           double h) {
+    double sum[2 * DOF], lost[2 * DOF], check = 0;
+    NEVH__EACH(k, 1, 2 * DOF) {
+        sum[k] = y[k];
+        lost[k] = M[k];
+        nevh__stage_advance(STAGES, order, k < DOF ? w->plus : w->minus, 1, 1,
+                            gradient + k * ROW, &sum[k], &lost[k]);
+        check += sum[k] - sum[k];
+    }
+    if (check != 0)
+        return false;
+    NEVH__EACH(k, 1, 2 * DOF) {
+        y[k] = sum[k];
+        M[k] = lost[k];
+    }
+    for (size_t k = 0; k < UNKNOWN; k++) {
+        double older[KEPT_STAGES], *kept = M + SLOPES_AT + k * KEPT_STAGES;
+        for (size_t i = STAGES; i < KEPT_STAGES; i++)
+            older[i] = kept[i - STAGES];
+        NEVH__EACH(i, 1, STAGES) {
+            double slope = gradient[(FIRST + k) * ROW + i];
+            kept[i] = FIRST + k < DOF ? slope : -slope;
+        }
+        for (size_t i = STAGES; i < KEPT_STAGES; i++)
+            kept[i] = older[i];
+    }
+    M[STEPS_AT] = nevh__stage_remember(M[H_AT] == h ? M[STEPS_AT] : 0, PAST,
+                                       first_change);
+    M[H_AT] = h;
+    return true;
+}
+
+/* Sweeps until the slopes are those at the points that they lead to, but
+   for rounding; false: they do not get there, and nothing has changed. */
+NEVH__INLINE bool
+take_step(NEVH__COMPILED(const double *N, ) double t, double h, double *Q,
+          double *P, double *M,
+          const step_weights *w NEVH__COMPILED(, size_t *counted)) {
+    double y[2 * DOF];
+    double points[2 * DOF * ROW], gradient[2 * DOF * ROW], times[ROW];
+    double before[UNKNOWN * ROW], least[UNKNOWN * ROW];
+    double unit[2 * DOF], scale[2 * DOF];
+    double lowest = INFINITY, level = -1, unknown = 0;
+    nevh__vector bad = {0};
+    size_t sweeps = 0, noises = 0;
+    struct nevh__stage_owner owner = {NEVH__COMPILED(N, ) times, &bad};
+    struct nevh__stage_judge_owner judge_owner = {
+        NEVH__COMPILED(N, ) y, scale, t, h, &level, &unknown, &noises};
+    nevh__stage_step x = {.n = DOF,
+                          .stages = STAGES,
+                          .row = ROW,
+                          .stride = ROW,
+                          .half = DOF * ROW,
+                          .partitioned = PARTITIONED,
+                          .unchecked = true,
+                          .mu_q = mu_q,
+                          .mu_p = mu_p,
+                          .to_q = w->to_q,
+                          .to_p = w->to_p,
+                          .q = y,
+                          .p = y + DOF,
+                          .compensation = M,
+                          .points = points,
+                          .gradient = gradient,
+                          .owner = &owner};
+    nevh__stage_changes changes = {FIRST,  UNKNOWN, unit,
+                                   before, least,   &lowest};
+    nevh__stage_judged judged = {
+        0, true, NOISY, NEWTON, UNKNOWN * STAGES, &judge_owner};
+    nevh__stage_lane lane;
+    nevh__stage_progress made;
+    nevh__stage_state state = NEVH__GO_ON;
+    if (M[HOLD_AT] > 0)
+        return false;
+    NEVH__EACH(k, 1, 2 * DOF) {
+        double size, most = SCALES[k];
+        y[k] = k < DOF ? Q[k] : P[k - DOF];
+        size = fabs(y[k]);
+        scale[k] = size > most ? size : most;
+        unit[k] = fabs(h) / scale[k];
+    }
+    NEVH_LANES(i, ROW) {
+        times[i] = t + nodes[i] * h;
+    }
+    nevh__stage_forget(&lane);
+    if (M[H_AT] == h && M[STEPS_AT] >= PAST)
+        nevh__stage_begin_sweeps(&x, &changes, NEVH__STAGES_TOGETHER,
+                                 long_guess, KEPT_STAGES, M + SLOPES_AT,
+                                 KEPT_STAGES);
+    else
+        nevh__stage_begin_sweeps(&x, &changes, NEVH__STAGES_TOGETHER, guess,
+                                 M[H_AT] == h && M[STEPS_AT] > 0 ? STAGES : 0,
+                                 M + SLOPES_AT, KEPT_STAGES);
+    while (state == NEVH__GO_ON && sweeps < NEVH__STAGE_SWEEPS) {
+        if (nevh__stage_map(&x, NEVH__STAGES_TOGETHER))
+            return false;
+        nevh__stage_compare_sweep(&x, &changes, NEVH__STAGES_TOGETHER, &made);
+        if (!(made.change < INFINITY))
+            return false;
+        state = nevh__stage_judge_fixed_point(&judged, &lane, &made);
+        sweeps++;
+    }
+    if (state != NEVH__DONE || is_bad(bad) || unknown != 0 ||
+        !add_step(w, gradient, lane.first, y, M, h))
+        return false;
+    NEVH__EACH(k, 1, DOF) {
+        Q[k] = y[k];
+        P[k] = y[DOF + k];
+    }
+#ifdef NEVH__FOR_READERS
+    M[SWEEPS_AT] += (double)sweeps;
+#else
+    counted[0] += sweeps;
+    counted[1] += noises;
+    counted[2] += sweeps;
+#endif
+    return true;
+}
+
+#endif

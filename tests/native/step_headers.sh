@@ -1,0 +1,51 @@
+#!/bin/sh
+# Headers of compiled steps are C as they stand: as a scene's steps are compiled,
+# and as programs have them.
+
+srcdir=${srcdir:-.}
+cc=${CC:-cc}
+status=0
+work=step_headers.$$
+trap 'rm -rf $work' EXIT
+trap 'exit 1' HUP INT TERM
+mkdir $work || exit 1
+$cc --version >/dev/null 2>&1 || { echo "no C compiler"; exit 77; }
+
+# compiles CC FAMILY HEADER [DEFINITION...]
+compiles() {
+    compiler=$1 family=$2 header=$3
+    shift 3
+    $compiler -std=c11 -fsyntax-only -Wall -Wextra -Werror -Wno-unknown-pragmas \
+        -Wno-psabi -Wno-unused-function -Wno-unused-const-variable \
+        -DFAMILY_$family -DSTEPS="\"$header\"" "$@" -I"$srcdir/include" \
+        -I"$srcdir/lib" -I"$srcdir/integrators" -Iinclude -Ilib \
+        "$srcdir/tests/native/step_header.c" 2>$work/err && return
+    echo "$header does not compile by $compiler $*:"
+    head -n 20 $work/err
+    status=1
+}
+
+for compiler in "$cc" clang; do
+    $compiler --version >/dev/null 2>&1 || continue
+    for way in -DNEVH__COMPILE -DNEVH__FOR_READERS; do
+        compiles $compiler ADAPTIVE native/steps/adaptive_driver.h $way
+        compiles $compiler ADAPTIVE_VERLET native/steps/adaptive_verlet_driver.h $way
+        compiles $compiler ADAPTIVE_VERLET native/steps/adaptive_verlet_driver.h \
+            $way -DNEVH__REVERSIBLE
+        compiles $compiler IMPLICIT native/steps/implicit_orbit.h $way
+        compiles $compiler IMPLICIT native/steps/implicit_orbit.h $way \
+            -DNEVH__DIFFERENCES
+    done
+    compiles $compiler IMPLICIT native/steps/implicit_lanes.h
+done
+
+# Each header is tried, and a wrong one is found.
+for header in "$srcdir"/lib/native/steps/*.h; do
+    grep -q "native/steps/${header##*/}" "$0" "$srcdir/tests/native/step_header.c" \
+        "$srcdir"/lib/native/steps/*.h || { echo "$header is not tried"; status=1; }
+done
+sed 's/size_t done = 0;/size_t done = t;/' \
+    "$srcdir/lib/native/steps/adaptive_driver.h" >$work/wrong.h
+(compiles "$cc" ADAPTIVE "$PWD/$work/wrong.h" >/dev/null; exit $status) &&
+    { echo "a wrong header compiles"; status=1; }
+exit $status
