@@ -33,7 +33,7 @@ tools_nevh_SOURCES = \
 	tools/experiment/records.c \
 	tools/search/study.h \
 	tools/search/grid.c \
-	tools/search/fit.c \
+	tools/search/applicable.c \
 	tools/search/search.c \
 	tools/search/study.c \
 	tools/search/cost_private.h \
@@ -44,8 +44,8 @@ tools_nevh_SOURCES = \
 	tools/search/recommend_private.h \
 	tools/search/recommend_search.c \
 	tools/search/recommend.c \
-	tools/search/promise.c \
-	tools/search/advice.c \
+	tools/search/recommend_longer.c \
+	tools/search/recommend_words.c \
 	tools/search/gradients_private.h \
 	tools/search/gradients.c \
 	tools/search/gradients_along.c \
@@ -67,7 +67,7 @@ tools_nevh_SOURCES = \
 	tools/orbit/export.c \
 	tools/orbit/reference.c \
 	tools/experiment/stability.c \
-	tools/search/remedy.c \
+	tools/search/suggested_step.c \
 	tools/experiment/trial_run.c \
 	tools/inspect/smoothness.c \
 	tools/hard/hard_cases.h \
@@ -85,9 +85,9 @@ tools_nevh_SOURCES = \
 	tools/report/report.c \
 	tools/report/report_html.c \
 	tools/report/variants.c \
-	tools/report/film.c \
-	tools/report/film_html.c \
-	tools/report/film_private.h \
+	tools/report/animation.c \
+	tools/report/animation_html.c \
+	tools/report/animation_private.h \
 	tools/cli/page_html.c \
 	tools/report/live_page.c \
 	tools/ensemble/map.h \

@@ -36,7 +36,7 @@ static void settle_rows(const plan *p, row_list *r) {
     row **all = tool_allocate(r->count, sizeof *all);
     for (size_t i = 0; i < r->count; i++)
         all[i] = &r->row[i];
-    rows_settle(p, all, r->count, false);
+    rows_choose_native(p, all, r->count, false);
     free(all);
 }
 
@@ -156,11 +156,11 @@ static table *shown(const plan *p, const row_list *r) {
 /* Messages of rows without numbers, each once. */
 static void list_reasons(const row_list *r, list *words) {
     for (size_t i = 0; i < r->count; i++) {
-        bool told = r->row[i].ran;
-        for (size_t k = 0; !told && k < i; k++)
-            told = r->row[k].integrator == r->row[i].integrator &&
-                   strcmp(r->row[k].status, r->row[i].status) == 0;
-        if (!told)
+        bool known = r->row[i].ran;
+        for (size_t k = 0; !known && k < i; k++)
+            known = r->row[k].integrator == r->row[i].integrator &&
+                    strcmp(r->row[k].status, r->row[i].status) == 0;
+        if (!known)
             list_print(words, "%s %s", r->row[i].integrator, r->row[i].status);
     }
 }
@@ -188,7 +188,7 @@ static void judge(const plan *p, const row_list *r, bool is_table,
     if (is_table && !ends)
         stability_words(p, r->row, r->count, words);
     if (is_table && !ends)
-        remedy_words(p, r->row, r->count, words);
+        suggested_step_words(p, r->row, r->count, words);
     time_words(p, r->row, r->count, words);
     passed_words(p, r->row, r->count, words);
     free(ends);

@@ -26,8 +26,8 @@ static bool always(const row rows[], size_t count, size_t i,
     return true;
 }
 
-static void tell_all(const row rows[], size_t count, nevh_verdict verdict,
-                     const char *one, const char *many, list *words) {
+static void common_words(const row rows[], size_t count, nevh_verdict verdict,
+                         const char *one, const char *many, list *words) {
     list names = {0};
     for (size_t i = 0; i < count; i++)
         if (always(rows, count, i, verdict))
@@ -110,8 +110,8 @@ char *verdict_subject(const plan *p, const row rows[], size_t count,
 }
 
 /* When the drifting error passes, or would pass, the bounded one. */
-static void tell_crossing(const plan *p, const row *r, const row *b,
-                          const char *text, list *words) {
+static void crossing_words(const plan *p, const row *r, const row *b,
+                           const char *text, list *words) {
     static const double long_after = 1e4; /* runs: of no practical meaning */
     static const double straight =
         0.999; /* R^2: the line tells of first steps */
@@ -163,8 +163,8 @@ static char *slope_of(const plan *p, const nevh_energy_report *e) {
     return text;
 }
 
-static void tell_line(const plan *p, const row rows[], size_t count,
-                      const row *r, const char *subject, list *words) {
+static void line_words(const plan *p, const row rows[], size_t count,
+                       const row *r, const char *subject, list *words) {
     const nevh_energy_report *e = &r->energy;
     double span = r->t_end - p->run->t_start;
     char *drifts = drift_of(e), *slope = slope_of(p, e);
@@ -172,14 +172,14 @@ static void tell_line(const plan *p, const row rows[], size_t count,
         text_print("%s %s%s, %.2g %% of the scale over the run (%s)", subject,
                    drifts, p->balance ? " against the balance" : "",
                    100 * fabs(e->drift) * span, slope);
-    tell_crossing(p, r, bounded_beside(rows, count, r), text, words);
+    crossing_words(p, r, bounded_beside(rows, count, r), text, words);
     free(drifts);
     free(slope);
     free(text);
 }
 
-static void tell_later_line(const plan *p, const row *r, const char *subject,
-                            list *words) {
+static void later_line_words(const plan *p, const row *r, const char *subject,
+                             list *words) {
     char *drifts = drift_of(&r->longer), *slope = slope_of(p, &r->longer);
     char *until = verdict_until(p, r);
     list_print(words,
@@ -192,13 +192,13 @@ static void tell_later_line(const plan *p, const row *r, const char *subject,
     free(until);
 }
 
-static void tell_drift(const plan *p, const row rows[], size_t count,
-                       const row *r, list *words) {
+static void drift_words(const plan *p, const row rows[], size_t count,
+                        const row *r, list *words) {
     char *subject = verdict_subject(p, rows, count, r);
     if (has_line(&r->energy))
-        tell_line(p, rows, count, r, subject, words);
+        line_words(p, rows, count, r, subject, words);
     else if (r->followed > 0 && has_line(&r->longer))
-        tell_later_line(p, r, subject, words);
+        later_line_words(p, r, subject, words);
     else
         list_print(
             words,
@@ -211,8 +211,8 @@ static void tell_drift(const plan *p, const row rows[], size_t count,
 }
 
 /* Errors that do not grow, but are no small part of the energy. */
-static void tell_large(const plan *p, const row rows[], size_t count,
-                       list *words) {
+static void large_error_words(const plan *p, const row rows[], size_t count,
+                              list *words) {
     for (size_t i = 0; i < count; i++) {
         const row *r = &rows[i];
         if (!verdict_is(r, NEVH_BOUNDED) || !(r->energy.max > 1))
@@ -245,8 +245,8 @@ static double level_until(const plan *p, const row rows[], size_t count) {
     return start + least;
 }
 
-static void tell_bounded(const plan *p, const row rows[], size_t count,
-                         list *words) {
+static void bounded_words(const plan *p, const row rows[], size_t count,
+                          list *words) {
     double until = level_until(p, rows, count);
     char *unit = verdict_unit(p, " ");
     char *also =
@@ -261,7 +261,7 @@ static void tell_bounded(const plan *p, const row rows[], size_t count,
     char *many = text_print("keep the energy bounded: their errors are level "
                             "over the run%s.",
                             also);
-    tell_all(rows, count, NEVH_BOUNDED, one, many, words);
+    common_words(rows, count, NEVH_BOUNDED, one, many, words);
     free(unit);
     free(also);
     free(one);
@@ -269,8 +269,9 @@ static void tell_bounded(const plan *p, const row rows[], size_t count,
 }
 
 /* Names, for an integrator with several verdicts, the steps that have that one. */
-static void tell_some(const row rows[], size_t count, const char *integrator,
-                      nevh_verdict verdict, list *words) {
+static void partial_words(const row rows[], size_t count,
+                          const char *integrator, nevh_verdict verdict,
+                          list *words) {
     static const char *const text[] = {
         [NEVH_BOUNDED] = "keeps the energy bounded",
         [NEVH_RANDOM_WALK] = "shows a random walk of the energy",
@@ -293,15 +294,15 @@ static void tell_some(const row rows[], size_t count, const char *integrator,
 }
 
 /* Row i, where it is the first of its integrator, whose rows differ. */
-static void tell_mixed(const row rows[], size_t count, size_t i, list *words) {
-    static const nevh_verdict told[] = {NEVH_BOUNDED, NEVH_RANDOM_WALK,
+static void mixed_words(const row rows[], size_t count, size_t i, list *words) {
+    static const nevh_verdict kind[] = {NEVH_BOUNDED, NEVH_RANDOM_WALK,
                                         NEVH_UNSTABLE};
     bool first = true;
     for (size_t k = 0; k < i; k++)
         first &= strcmp(rows[k].integrator, rows[i].integrator) != 0;
-    for (size_t v = 0; first && v < sizeof told / sizeof *told; v++)
-        if (!always(rows, count, i, told[v]))
-            tell_some(rows, count, rows[i].integrator, told[v], words);
+    for (size_t v = 0; first && v < sizeof kind / sizeof *kind; v++)
+        if (!always(rows, count, i, kind[v]))
+            partial_words(rows, count, rows[i].integrator, kind[v], words);
 }
 
 /* The row of the same scheme with the next longer dt. */
@@ -317,7 +318,7 @@ static const row *longer(const row rows[], const row *r) {
 }
 
 /* True if an earlier row, with another gradient, stands for this one. */
-static bool is_told(const row rows[], const row *r) {
+static bool is_repeated(const row rows[], const row *r) {
     for (const row *k = rows; k < r; k++)
         if (same_place(k, r))
             return true;
@@ -331,7 +332,7 @@ static void warn_of_changes(const row rows[], size_t count, list *words) {
         if (!a || a->energy.verdict == b->energy.verdict)
             continue;
         bool own = differs(rows, count, a) || differs(rows, count, b);
-        if (!own && is_told(rows, b))
+        if (!own && is_repeated(rows, b))
             continue;
         char *more = text_print("%s of %s%s%s: %s at dt = %.4g, %s at %.4g",
                                 text ? text : "", b->integrator,
@@ -351,33 +352,34 @@ static void warn_of_changes(const row rows[], size_t count, list *words) {
 }
 
 void verdict_words(const plan *p, const row rows[], size_t count, list *words) {
-    tell_bounded(p, rows, count, words);
-    tell_all(rows, count, NEVH_RANDOM_WALK,
-             "shows a random walk of the energy: its error grows, but not "
-             "linearly.",
-             "show a random walk of the energy: their errors grow, but not "
-             "linearly.",
-             words);
+    bounded_words(p, rows, count, words);
+    common_words(rows, count, NEVH_RANDOM_WALK,
+                 "shows a random walk of the energy: its error grows, but not "
+                 "linearly.",
+                 "show a random walk of the energy: their errors grow, but not "
+                 "linearly.",
+                 words);
     for (size_t i = 0; i < count; i++)
         if (verdict_is(&rows[i], NEVH_DRIFTS))
-            tell_drift(p, rows, count, &rows[i], words);
-    tell_all(rows, count, NEVH_UNSTABLE,
-             "is unstable: its energy error has grown past every energy the "
-             "system started with.",
-             "are unstable: their energy errors have grown past every energy "
-             "the system started with.",
-             words);
+            drift_words(p, rows, count, &rows[i], words);
+    common_words(
+        rows, count, NEVH_UNSTABLE,
+        "is unstable: its energy error has grown past every energy the "
+        "system started with.",
+        "are unstable: their energy errors have grown past every energy "
+        "the system started with.",
+        words);
     for (size_t i = 0; i < count; i++)
         if (is_later(&rows[i]))
-            verdict_tell_later(p, rows, count, &rows[i], words);
+            verdict_later_words(p, rows, count, &rows[i], words);
     for (size_t i = 0; i < count; i++)
-        tell_mixed(rows, count, i, words);
-    tell_large(p, rows, count, words);
-    verdict_tell_larger(p, rows, count, words);
+        mixed_words(rows, count, i, words);
+    large_error_words(p, rows, count, words);
+    verdict_larger_words(p, rows, count, words);
     for (size_t i = 0; i < count; i++)
         if (verdict_is(&rows[i], NEVH_UNDECIDED))
-            verdict_tell_open(p, rows, count, &rows[i], words);
-    verdict_tell_followed(p, rows, count, words);
+            verdict_open_words(p, rows, count, &rows[i], words);
+    verdict_followed_words(p, rows, count, words);
     state_words(p, rows, count, words);
     warn_of_changes(rows, count, words);
 }

@@ -16,8 +16,8 @@ char *verdict_until(const plan *p, const row *r) {
 }
 
 /* The outcome of a calm run when it is continued. */
-void verdict_tell_later(const plan *p, const row rows[], size_t count,
-                        const row *r, list *words) {
+void verdict_later_words(const plan *p, const row rows[], size_t count,
+                         const row *r, list *words) {
     char *subject = verdict_subject(p, rows, count, r);
     char *until = verdict_until(p, r);
     list_print(words,
@@ -35,8 +35,8 @@ static double rounded_up(double x) {
 }
 
 /* Why even a longer run leaves a row open, and what may decide it. */
-static void tell_open_run(const plan *p, const row *r, const char *subject,
-                          list *words) {
+static void open_run_words(const plan *p, const row *r, const char *subject,
+                           list *words) {
     double start = p->run->t_start, span = r->t_end - start;
     double seen = r->followed > 0 ? r->followed : 1;
     double decides = rounded_up(start + 4 * seen * span);
@@ -71,8 +71,8 @@ static bool is_hidden(const nevh_energy_report *e) {
 }
 
 /* A row that even a longer run leaves open. */
-void verdict_tell_open(const plan *p, const row rows[], size_t count,
-                       const row *r, list *words) {
+void verdict_open_words(const plan *p, const row rows[], size_t count,
+                        const row *r, list *words) {
     const nevh_energy_report *e = r->followed > 0 ? &r->longer : &r->energy;
     char *subject = verdict_subject(p, rows, count, r);
     char *until = r->followed > 0 ? verdict_until(p, r) : NULL;
@@ -91,7 +91,7 @@ void verdict_tell_open(const plan *p, const row rows[], size_t count,
             subject, until ? " until t = " : "", until ? until : "",
             fmax(e->relative[0], e->relative[1]));
     else if (r->followed > 0 && e->max > e->limit)
-        verdict_tell_later(p, rows, count, r, words);
+        verdict_later_words(p, rows, count, r, words);
     else if (isfinite(r->stopped))
         list_print(words,
                    "%s: it stopped at t = %.4g%s, too early for a verdict on "
@@ -106,7 +106,7 @@ void verdict_tell_open(const plan *p, const row rows[], size_t count,
             strcmp(r->gradient, "exact") == 0 ? "" : " in the gradient",
             r->integrator);
     else
-        tell_open_run(p, r, subject, words);
+        open_run_words(p, r, subject, words);
     free(subject);
     free(until);
     free(unit);
@@ -120,8 +120,8 @@ bool verdict_leaves(const row *r) {
 }
 
 /* Level errors of a run that are larger when it is continued. */
-void verdict_tell_larger(const plan *p, const row rows[], size_t count,
-                         list *words) {
+void verdict_larger_words(const plan *p, const row rows[], size_t count,
+                          list *words) {
     static const double larger = 3;
     for (size_t i = 0; i < count; i++) {
         const row *r = &rows[i];
@@ -130,7 +130,7 @@ void verdict_tell_larger(const plan *p, const row rows[], size_t count,
             r->longer.max <= r->longer.rounding)
             continue;
         if (r->longer.max > r->longer.limit) {
-            verdict_tell_later(p, rows, count, r, words);
+            verdict_later_words(p, rows, count, r, words);
             continue;
         }
         bool leaves = verdict_leaves(r);
@@ -150,8 +150,8 @@ void verdict_tell_larger(const plan *p, const row rows[], size_t count,
 }
 
 /* Which verdicts are not from the run alone. */
-void verdict_tell_followed(const plan *p, const row rows[], size_t count,
-                           list *words) {
+void verdict_followed_words(const plan *p, const row rows[], size_t count,
+                            list *words) {
     list names = {0};
     double most = 0;
     for (size_t i = 0; i < count; i++) {

@@ -17,18 +17,18 @@ char *verdict_unit(const plan *, const char *before);
 /* The end of the run that a row's verdict is from. */
 char *verdict_until(const plan *, const row *);
 /* The outcome of a calm run when it is continued. */
-void verdict_tell_later(const plan *, const row rows[], size_t count,
-                        const row *, list *words);
+void verdict_later_words(const plan *, const row rows[], size_t count,
+                         const row *, list *words);
 /* A row that even a longer run leaves open. */
-void verdict_tell_open(const plan *, const row rows[], size_t count,
-                       const row *, list *words);
+void verdict_open_words(const plan *, const row rows[], size_t count,
+                        const row *, list *words);
 /* True if the longer run meets far larger energies. */
 bool verdict_leaves(const row *);
 /* Level errors of a run that are larger when it is continued. */
-void verdict_tell_larger(const plan *, const row rows[], size_t count,
-                         list *words);
+void verdict_larger_words(const plan *, const row rows[], size_t count,
+                          list *words);
 /* Which verdicts are not from the run alone. */
-void verdict_tell_followed(const plan *, const row rows[], size_t count,
-                           list *words);
+void verdict_followed_words(const plan *, const row rows[], size_t count,
+                            list *words);
 
 #endif

@@ -50,7 +50,7 @@ static int make_sweep(sweep_job *j) {
     if (nevh_sweep_status(j->sweep))
         return tool_refuse("%s: %s", p->name, nevh_sweep_message(j->sweep));
     if (!nevh_sweep_native(j->sweep, &why))
-        plan_tell_why(why);
+        plan_why_report(why);
     return TOOL_OK;
 }
 

@@ -83,7 +83,7 @@ static bool measure(const plan *p, size_t count, double size[]) {
 }
 
 /* returns  whether it is known */
-static bool tell_changed(const plan *p, list *notes, bool *followed) {
+static bool changed_notes(const plan *p, list *notes, bool *followed) {
     static const double coarse = 1e-7, fine = 1e-11, rounding = 1e-9;
     size_t count = nevh_scene_shown_count(p->scene, NEVH_INVARIANTS);
     double most = p->run->t_start + MOST_STEPS * p->dt[0];
@@ -110,13 +110,13 @@ static bool tell_changed(const plan *p, list *notes, bool *followed) {
 void conserved_warn(const plan *p, list *notes) {
     bool followed;
     if (nevh_scene_shown_count(p->scene, NEVH_INVARIANTS))
-        tell_changed(p, notes, &followed);
+        changed_notes(p, notes, &followed);
 }
 
 void conserved_words(const plan *p, list *notes) {
     bool followed;
     if (nevh_scene_shown_count(p->scene, NEVH_INVARIANTS) &&
-        !tell_changed(p, notes, &followed))
+        !changed_notes(p, notes, &followed))
         list_add(notes, followed ? "[invariants] were not checked: their sizes "
                                    "near the start are not known."
                                  : "[invariants] were not checked: dop853 "

@@ -31,10 +31,11 @@ char *stability_cause(const nevh_integrator *, double limit, double dt,
 /* The same of each unstable row of compare. */
 void stability_words(const plan *, const row rows[], size_t count, list *words);
 
-/* remedy.c: steps with which unstable and drifting rows keep an error of 1 % to
+/* suggested_step.c: steps with which unstable and drifting rows keep an error of 1 % to
    the end of the run.
    cost  a few seconds an integrator at most, as nevh_counts_seconds */
-void remedy_words(const plan *, const row rows[], size_t count, list *words);
+void suggested_step_words(const plan *, const row rows[], size_t count,
+                          list *words);
 
 /* smoothness.c: whether H is smooth on the way of its orbit, as far as 5000 series
    go. */

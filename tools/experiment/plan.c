@@ -285,20 +285,20 @@ double plan_steps(const plan *p, double h) {
     return isfinite(steps) ? steps : 0;
 }
 
-void plan_tell_native(const nevh_stepper *s) {
+void plan_native_report(const nevh_stepper *s) {
     const char *why;
     int status = nevh_stepper_status(s);
     if ((!status || status == NEVH_STOPPED) && !nevh_stepper_native(s, &why))
-        plan_tell_why(why);
+        plan_why_report(why);
 }
 
-void plan_tell_why(const char *why) {
-    static char *told;
-    if (!*why || (told && strcmp(told, why) == 0))
+void plan_why_report(const char *why) {
+    static char *reported;
+    if (!*why || (reported && strcmp(reported, why) == 0))
         return;
     fprintf(stderr, "nevh: steps are not compiled: %s\n", why);
-    free(told);
-    told = text_print("%s", why);
+    free(reported);
+    reported = text_print("%s", why);
 }
 
 const nevh_system *plan_transform(const plan *p, const char *name) {

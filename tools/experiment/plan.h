@@ -30,9 +30,9 @@ typedef struct {
     bool portable, friction, time, balance;
     nevh_native_use native;
     bool no_cache;
-    bool hurried;    /* rows are to be finished later, and timed then */
-    double patience; /* work that a row may take; 0: any */
-    double follow;   /* work that its verdict may take; 0: as usual */
+    bool screening;    /* rows are finished later, and timed then */
+    double work_limit; /* work that a row may take; 0: any */
+    double follow;     /* work that its verdict may take; 0: as usual */
     bool match_work, diagnostics;
     nevh_timing *timing;       /* NULL: H reads no time */
     nevh_timing *jumps;        /* of a longer time; NULL: there are none */
@@ -45,7 +45,7 @@ typedef struct {
     bool observable_level;   /* its size, not its range */
     double observable_error; /* what that of the reference makes of it */
     energies *energies;      /* whose energies rows compare; NULL: none */
-    bool promises;           /* rows tell how long they keep what they should */
+    bool error_bounds;       /* rows have one */
     stepper_cache *steppers; /* of steppers */
 } plan;
 /* The scene's own title, else its name, and what options change; to be freed. */
@@ -57,8 +57,8 @@ nevh_options plan_options(const plan *, const char *gradient);
 /* Steps of h that the whole run takes. */
 double plan_steps(const plan *, double h);
 /* Says once why steps could not be compiled. */
-void plan_tell_native(const nevh_stepper *);
-void plan_tell_why(const char *why); /* "": there is nothing to tell */
+void plan_native_report(const nevh_stepper *);
+void plan_why_report(const char *why); /* "": no message */
 /* The scheme of "gauss4" or "gauss4+transform", the scene's own included; NULL for
    other names. */
 const nevh_integrator *plan_scheme(const plan *, const char *name,

@@ -32,8 +32,8 @@ static void add_record(table *t, const plan *p, const row *r) {
     diagnostics_record(t, p, r);
     if (p->observable)
         table_number(t, when(r->ran, r->observable_error));
-    if (p->promises)
-        table_number(t, r->promise ? r->promise->until : NAN);
+    if (p->error_bounds)
+        table_number(t, r->error_bound ? r->error_bound->until : NAN);
     energies_put(t, p, r, false);
     table_text(t, r->native ? "yes" : "no");
     if (p->diagnostics)
@@ -47,7 +47,7 @@ table *records(const plan *p, const row rows[], size_t count) {
     diagnostics_columns(t, p, false);
     if (p->observable)
         table_column(t, "observable_error");
-    if (p->promises)
+    if (p->error_bounds)
         table_column(t, "holds_until");
     energies_columns(t, p, false);
     table_column(t, "native");

@@ -1,4 +1,4 @@
-/* nevh: one run of compare, watched.
+/* nevh: one run of compare, with its observers.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "envelope.h"
 #include <math.h>
@@ -11,7 +11,7 @@ typedef struct {
     const plan *plan;
     row *row;
     double *q, *p;
-} work;
+} row_job;
 
 typedef struct {
     nevh_energy *energy;
@@ -29,13 +29,13 @@ static int stop_when_unstable(void *data, size_t step, double t,
     return status;
 }
 
-static void go_to_start(const work *w) {
+static void go_to_start(const row_job *w) {
     memcpy(w->q, w->plan->q, w->plan->n * sizeof *w->q);
     memcpy(w->p, w->plan->p, w->plan->n * sizeof *w->p);
 }
 
-static int run(const work *w, nevh_stepper *s, const nevh_observer observers[],
-               size_t count, double *stopped) {
+static int run(const row_job *w, nevh_stepper *s,
+               const nevh_observer observers[], size_t count, double *stopped) {
     go_to_start(w);
     return plan_run(w->plan, s, w->row->step, w->q, w->p, observers, count,
                     stopped);
@@ -55,7 +55,7 @@ nevh_energy *row_energy(const plan *p, const row *r, const nevh_stepper *s) {
 }
 
 /* The run itself, or what follows it. */
-static void unstable_since(work *w) {
+static void unstable_since(row_job *w) {
     bool balance = w->plan->balance;
     nevh_stepper *s = row_stepper(w->plan, w->row, balance);
     watch unstable = {row_energy(w->plan, w->row, s), w->row->energy.limit,
@@ -84,7 +84,7 @@ nevh_counts row_counts(const nevh_stepper *s, nevh_counts before) {
 }
 
 /* The mean over all steps tried, those too long for the tolerance included. */
-static double mean_step(const work *w) {
+static double mean_step(const row_job *w) {
     int each = nevh_integrator_gradients(w->row->scheme);
     double evaluations = (double)w->row->counts.gradients;
     if (each == 0 || evaluations == 0)
@@ -98,44 +98,44 @@ typedef struct {
     const nevh_integrator *scheme;
     const nevh_stepper *stepper;
     nevh_counts before;
-    bool late;
-} patience;
+    bool over_limit;
+} work_watch;
 
-static int mind_work(void *data, size_t step, double t, const double q[],
-                     const double p[]) {
-    patience *wait = data;
+static int observe_work(void *data, size_t step, double t, const double q[],
+                        const double p[]) {
+    work_watch *wait = data;
     nevh_counts c = row_counts(wait->stepper, wait->before);
     (void)t, (void)q, (void)p;
-    wait->late = nevh_counts_seconds(&c, wait->plan->n, wait->scheme,
-                                     nevh_stepper_order(wait->stepper),
-                                     step) > wait->plan->patience;
-    return wait->late ? NEVH_STOPPED : NEVH_OK;
+    wait->over_limit = nevh_counts_seconds(&c, wait->plan->n, wait->scheme,
+                                           nevh_stepper_order(wait->stepper),
+                                           step) > wait->plan->work_limit;
+    return wait->over_limit ? NEVH_STOPPED : NEVH_OK;
 }
 
-/* Looks at a promise as often as is worth it. */
+/* Checks an error bound, about LOOKS times a run. */
 typedef struct {
-    promise *promise;
+    error_bound *error_bound;
     const nevh_energy *energy;
     const nevh_state_error *state;
     const observable *shown; /* counts where the plan has one */
-} keeper;
+} bound_watch;
 
 enum { LOOKS = 4000 };
 
-static int mind_promise(void *data, size_t step, double t, const double q[],
-                        const double p[]) {
-    keeper *k = data;
-    promise *made = k->promise;
-    double error = made->by_state ? nevh_state_error_result(k->state)
-                                  : nevh_energy_result(k->energy, 0).max;
-    if (made->by_state && k->shown->plan->observable && !isnan(error))
+static int observe_error_bound(void *data, size_t step, double t,
+                               const double q[], const double p[]) {
+    bound_watch *k = data;
+    error_bound *bound = k->error_bound;
+    double error = bound->by_state ? nevh_state_error_result(k->state)
+                                   : nevh_energy_result(k->energy, 0).max;
+    if (bound->by_state && k->shown->plan->observable && !isnan(error))
         error = k->shown->worst;
     (void)step, (void)q, (void)p;
-    made->unknown = isnan(error);
-    made->broken = error > made->most;
-    if (made->unknown || made->broken)
+    bound->unknown = isnan(error);
+    bound->broken = error > bound->most;
+    if (bound->unknown || bound->broken)
         return NEVH_STOPPED;
-    made->until = t;
+    bound->until = t;
     return NEVH_OK;
 }
 
@@ -178,9 +178,9 @@ static void explain_unknown(const plan *p, row *r, const char *why) {
                  "the reference has no state: %s", message);
 }
 
-static void watched(work *w, nevh_stepper *s) {
+static void run_observed(row_job *w, nevh_stepper *s) {
     row *r = w->row;
-    patience wait = {w->plan, r->scheme, s, nevh_stepper_counts(s), false};
+    work_watch wait = {w->plan, r->scheme, s, nevh_stepper_counts(s), false};
     nevh_energy *energy = row_energy(w->plan, w->row, s);
     nevh_state_error *state = nevh_state_error_new(w->plan->reference);
     invariants *kept = w->plan->diagnostics ? invariants_new(w->plan) : NULL;
@@ -204,29 +204,29 @@ static void watched(work *w, nevh_stepper *s) {
         observers[count++] = (nevh_observer){invariants_observe, kept, 1};
     if (shadow)
         observers[count++] = (nevh_observer){shadow_observe, shadow, 1};
-    keeper keeps = {r->promise, energy, state, &shown};
+    bound_watch keeps = {r->error_bound, energy, state, &shown};
     double steps = (w->plan->t_end - w->plan->run->t_start) / r->step;
-    if (r->promise)
+    if (r->error_bound)
+        observers[count++] = (nevh_observer){observe_error_bound, &keeps,
+                                             1 + (size_t)(steps / LOOKS)};
+    if (w->plan->work_limit > 0)
         observers[count++] =
-            (nevh_observer){mind_promise, &keeps, 1 + (size_t)(steps / LOOKS)};
-    if (w->plan->patience > 0)
-        observers[count++] =
-            (nevh_observer){mind_work, &wait, w->plan->n < 8 ? 8 : 1};
+            (nevh_observer){observe_work, &wait, w->plan->n < 8 ? 8 : 1};
     double begin = cpu_seconds();
     int status = run(w, s, observers, count, &r->stopped);
-    r->watched = cpu_seconds() - begin;
+    r->observed_seconds = cpu_seconds() - begin;
     r->t_end = status                 ? nevh_stepper_time(s)
                : isfinite(r->stopped) ? r->stopped
                                       : w->plan->t_end;
-    const char *why = wait.late                ? "it takes too long"
+    const char *why = wait.over_limit          ? "it takes too long"
                       : status == NEVH_STOPPED ? nevh_energy_message(energy)
                                                : nevh_stepper_message(s);
     r->energy = nevh_energy_result(energy, 0);
     r->passed = nevh_energy_passed(energy, &r->passed_effect);
     r->steps = nevh_stepper_taken(s);
     r->counts = row_counts(s, wait.before);
-    r->late = wait.late;
-    r->ran = !r->late && (!status || r->energy.verdict == NEVH_UNSTABLE);
+    r->over_limit = wait.over_limit;
+    r->ran = !r->over_limit && (!status || r->energy.verdict == NEVH_UNSTABLE);
     r->failed = !r->ran;
     r->broken = status && r->ran;
     char *ends = ends_text(w->plan, w->plan->ends);
@@ -265,12 +265,12 @@ static bool refused(row *r, const nevh_stepper *s) {
     return true;
 }
 
-static work work_new(const plan *p, row *r) {
-    return (work){p, r, tool_allocate(p->n, sizeof(double)),
-                  tool_allocate(p->n, sizeof(double))};
+static row_job row_job_new(const plan *p, row *r) {
+    return (row_job){p, r, tool_allocate(p->n, sizeof(double)),
+                     tool_allocate(p->n, sizeof(double))};
 }
 
-static void work_free(work *w) {
+static void row_job_free(row_job *w) {
     free(w->q);
     free(w->p);
 }
@@ -278,13 +278,13 @@ static void work_free(work *w) {
 /* Sets the distance at which a scheme with a tolerance ends steps for observers: so
    long that the tolerance, not dt, limits its steps. If H reads the time it stays
    dt, so that changes within dt are seen. */
-static void space_ends(work *w) {
+static void space_ends(row_job *w) {
     static const double limited = 0.5, longer = 4, fewest = 16;
     row *r = w->row;
     const plan *p = w->plan;
     double longest = (p->t_end - p->run->t_start) / fewest, stopped;
     int each = nevh_integrator_gradients(r->scheme);
-    if (r->tolerance == 0 || each == 0 || p->time || p->hurried ||
+    if (r->tolerance == 0 || each == 0 || p->time || p->screening ||
         nevh_integrator_own_time(r->scheme))
         return;
     for (; longer * r->step <= longest; r->step *= longer) {
@@ -302,7 +302,7 @@ static void space_ends(work *w) {
 }
 
 void row_run(const plan *p, row *r) {
-    work w = work_new(p, r);
+    row_job w = row_job_new(p, r);
     r->step = r->dt;
     space_ends(&w);
     r->observable = p->observable;
@@ -311,12 +311,12 @@ void row_run(const plan *p, row *r) {
     nevh_stepper *s = row_stepper(p, r, p->balance);
     if (!refused(r, s)) {
         r->native = nevh_stepper_native(s, NULL);
-        watched(&w, s);
-        if (!p->hurried)
+        run_observed(&w, s);
+        if (!p->screening)
             row_follow(p, r);
         if (r->ran && p->diagnostics)
             diagnose_row(p, r);
-        if (r->ran && r->energy.verdict == NEVH_UNSTABLE && !p->hurried)
+        if (r->ran && r->energy.verdict == NEVH_UNSTABLE && !p->screening)
             unstable_since(&w);
         if (r->ran && r->tolerance > 0)
             r->dt = mean_step(&w);
@@ -324,27 +324,27 @@ void row_run(const plan *p, row *r) {
     r->work =
         nevh_counts_seconds(&r->counts, p->n, r->scheme, r->order, r->steps);
     row_stepper_keep(p, r, p->balance, s);
-    work_free(&w);
+    row_job_free(&w);
 }
 
 double row_end(const plan *p, const row *r) {
     double stopped = NAN;
     row copy = *r;
-    work w = work_new(p, &copy);
+    row_job w = row_job_new(p, &copy);
     nevh_stepper *s = row_stepper(p, r, false);
     if (nevh_stepper_status(s) || run(&w, s, NULL, 0, &stopped))
         stopped = p->run->t_start;
     row_stepper_keep(p, r, false, s);
-    work_free(&w);
+    row_job_free(&w);
     return isnan(stopped) ? p->t_end : stopped;
 }
 
 void row_finish(const plan *p, row *r) {
-    work w = work_new(p, r);
+    row_job w = row_job_new(p, r);
     row_follow(p, r);
     if (r->energy.verdict == NEVH_UNSTABLE)
         unstable_since(&w);
-    work_free(&w);
+    row_job_free(&w);
 }
 
 int row_fails(const plan *p, const row *r) {

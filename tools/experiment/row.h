@@ -5,13 +5,13 @@
 
 #include "plan.h"
 
-/* An error that a run is to keep, which ends it where it does not. */
+/* A bound of an error; the run ends if the error passes it. */
 typedef struct {
     double most;
     bool by_state;
-    double until; /* out: the last time at which it was seen to be kept */
+    double until;         /* out: the last time at which the error kept it */
     bool broken, unknown; /* out: since then; unknown: there is no error */
-} promise;
+} error_bound;
 
 /* row.c: one run of compare. */
 typedef struct {
@@ -24,18 +24,18 @@ typedef struct {
     int order, failed;    /* failed: of the exit status */
     size_t steps;
     char *status;
-    bool observable; /* its error is that of one, not of states */
-    bool native;     /* the steps whose time was taken are compiled */
-    bool ran, late;  /* there are numbers; patience was at its end */
-    bool broken;     /* ran, as an unstable one, until it failed */
+    bool observable;      /* its error is that of one, not of states */
+    bool native;          /* the steps whose time was taken are compiled */
+    bool ran, over_limit; /* there are numbers; its work passed work_limit */
+    bool broken;          /* ran, as an unstable one, until it failed */
     nevh_energy_report energy;
     double followed; /* lengths of the run that the verdict is from; 0: its own
                         alone */
     nevh_energy_report longer; /* then */
     bool open;                 /* its own leaves the verdict open */
     nevh_counts counts;
-    double work;            /* by its counts: the same on every machine */
-    double watched;         /* seconds, with all that watches */
+    double work;             /* by its counts: the same on every machine */
+    double observed_seconds; /* seconds, observers included */
     double seconds, spread; /* median, and half of what the middle half spans */
     double passed;          /* when a pole had been passed; NAN */
     const char *passed_effect; /* whose; NULL */
@@ -48,8 +48,8 @@ typedef struct {
     double symplecticity_error, reversal_error;
     nevh_shadow_report shadow; /* without samples: its scheme has none */
     double *changes; /* of invariants, the largest; NULL: not asked for */
-    struct envelope *errors; /* of the energy; NULL: not asked for */
-    promise *promise;        /* NULL: none */
+    struct envelope *errors;  /* of the energy; NULL: not asked for */
+    error_bound *error_bound; /* NULL: none */
     double *energies; /* errors of the energies of the plan's; NULL: unknown */
 } row;
 void row_run(const plan *, row *);
@@ -82,7 +82,8 @@ nevh_stepper *row_stepper(const plan *, const row *, bool balance);
    the cache holds.
    alone   true: it has to pay in one run of one row, as in nevh run; else in all
            runs of all */
-void rows_settle(const plan *, row *const rows[], size_t count, bool alone);
+void rows_choose_native(const plan *, row *const rows[], size_t count,
+                        bool alone);
 /* As row_stepper, of a row that is to be timed. */
 nevh_stepper *row_stepper_to_time(const plan *, const row *);
 void row_stepper_keep(const plan *, const row *, bool balance, nevh_stepper *);

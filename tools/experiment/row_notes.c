@@ -84,12 +84,12 @@ static bool has_nominal_steps(const plan *p, const row *r) {
 }
 
 static bool has_tolerance(const plan *p, const row *r) {
-    return r->tolerance > 0 && !p->hurried;
+    return r->tolerance > 0 && !p->screening;
 }
 
 /* True for adaptive rows of a search, which chose the tolerance itself. */
 static bool has_mean_step(const plan *p, const row *r) {
-    return r->tolerance > 0 && p->hurried;
+    return r->tolerance > 0 && p->screening;
 }
 
 /* Adds each note that holds for some row. */

@@ -41,7 +41,7 @@ static int stop_after(void *data, size_t step, double t, const double q[],
     return step < *steps ? NEVH_OK : NEVH_STOPPED;
 }
 
-/* As many steps as the run took that was watched, or the first of them. */
+/* Takes as many steps as the observed run, or the first of them. */
 static void run(const stopwatch *w) {
     const plan *p = w->plan;
     const row *r = w->row;
@@ -82,9 +82,9 @@ static double time_once(const stopwatch *w, double *spent) {
 static void choose_share(stopwatch *w) {
     static const double tried = 0.25; /* of that */
     double spent;
-    if (part >= w->row->watched)
+    if (part >= w->row->observed_seconds)
         return;
-    w->share = tried * part / w->row->watched;
+    w->share = tried * part / w->row->observed_seconds;
     time_once(w, &spent);
     w->share = fmin(1, w->share * part / spent);
 }
@@ -99,7 +99,7 @@ void rows_time(const plan *p, row *const rows[], size_t count, size_t rounds,
                bool whole) {
     stopwatch *w = tool_allocate(count, sizeof *w);
     double spent;
-    rows_settle(p, rows, count, false);
+    rows_choose_native(p, rows, count, false);
     for (size_t i = 0; i < count; i++) {
         w[i] = stopwatch_new(p, rows[i], rounds);
         if (!whole)

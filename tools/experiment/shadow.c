@@ -67,7 +67,8 @@ static double rounded(double ratio) {
     return unit * round(ratio / unit);
 }
 
-static void tell(const row rows[], size_t count, size_t first, list *words) {
+static void scheme_words(const row rows[], size_t count, size_t first,
+                         list *words) {
     const row *best = flattest(rows, count, first);
     if (best)
         list_print(words,
@@ -77,7 +78,7 @@ static void tell(const row rows[], size_t count, size_t first, list *words) {
                    rounded(best->shadow.energy / best->shadow.shadow));
 }
 
-static void tell_broken(const row rows[], size_t count, list *words) {
+static void broken_words(const row rows[], size_t count, list *words) {
     list broken = {0};
     for (size_t i = 0; i < count; i++)
         if (has_shadow(&rows[i]) && rows[i].shadow.breaks_down)
@@ -95,12 +96,12 @@ static void tell_broken(const row rows[], size_t count, list *words) {
 
 void shadow_words(const plan *p, const row rows[], size_t count, list *words) {
     for (size_t i = 0; p->diagnostics && i < count; i++) {
-        bool told = false;
+        bool known = false;
         for (size_t k = 0; k < i; k++)
-            told |= has_shadow(&rows[k]) && rows[k].scheme == rows[i].scheme;
-        if (!told && has_shadow(&rows[i]))
-            tell(rows, count, i, words);
+            known |= has_shadow(&rows[k]) && rows[k].scheme == rows[i].scheme;
+        if (!known && has_shadow(&rows[i]))
+            scheme_words(rows, count, i, words);
     }
     if (p->diagnostics)
-        tell_broken(rows, count, words);
+        broken_words(rows, count, words);
 }

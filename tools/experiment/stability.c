@@ -167,8 +167,8 @@ static char *cause_of(const plan *p, const row *r) {
 }
 
 /* All rows from there on that the same is to be said of; their causes go. */
-static void tell_cause(const row rows[], size_t count, char *causes[],
-                       size_t first, list *words) {
+static void cause_words(const row rows[], size_t count, char *causes[],
+                        size_t first, list *words) {
     list names = {0};
     char *cause = causes[first];
     for (size_t i = first; i < count; i++) {
@@ -196,6 +196,6 @@ void stability_words(const plan *p, const row rows[], size_t count,
             causes[i] = cause_of(p, &rows[i]);
     for (size_t i = 0; i < count; i++)
         if (causes[i])
-            tell_cause(rows, count, causes, i, words);
+            cause_words(rows, count, causes, i, words);
     free(causes);
 }

@@ -17,7 +17,7 @@ typedef struct {
 
 struct stepper_cache {
     place places[MOST];
-    bool settled, compiled; /* of rows that are timed: all that can be */
+    bool chosen, compiled; /* of rows that are timed: all that can be */
 };
 
 stepper_cache *stepper_cache_new(void) {
@@ -46,9 +46,9 @@ static double steps_compared(const plan *p) {
 }
 
 static double steps_foreseen(const plan *p, const row *r) {
-    if (p->hurried)
+    if (p->screening)
         return plan_steps(p, r->dt);
-    if (p->steppers->settled)
+    if (p->steppers->chosen)
         return p->steppers->compiled ? INFINITY : 0;
     return steps_compared(p);
 }
@@ -60,7 +60,7 @@ static nevh_stepper *plan_new(const plan *p, const row *r, bool balance) {
     o.balance = balance;
     o.steps_foreseen = steps_foreseen(p, r);
     nevh_stepper *s = nevh_stepper_new(p->system, r->scheme, &o);
-    plan_tell_native(s);
+    plan_native_report(s);
     return s;
 }
 
@@ -115,12 +115,13 @@ static void compile_all(const plan *p, row *const rows[], size_t count) {
     free(all);
 }
 
-void rows_settle(const plan *p, row *const rows[], size_t count, bool alone) {
+void rows_choose_native(const plan *p, row *const rows[], size_t count,
+                        bool alone) {
     stepper_cache *all = p->steppers;
     double sum = 0, most = -INFINITY;
-    if (all->settled || !count)
+    if (all->chosen || !count)
         return;
-    all->settled = true;
+    all->chosen = true;
     for (size_t i = 0; i < count; i++) {
         if (!alone && has_its_like(rows, i))
             continue;
@@ -146,6 +147,6 @@ nevh_stepper *row_stepper_to_time(const plan *p, const row *r) {
         nevh_stepper_free(s);
         s = plan_new(&tape, r, false);
     }
-    plan_tell_native(s);
+    plan_native_report(s);
     return s;
 }

@@ -270,7 +270,7 @@ trial_run trial_run_new(const plan *p, bool chaos) {
     return found;
 }
 
-static void tell_edge(const plan *p, const trial_run *f, list *notes) {
+static void edge_notes(const plan *p, const trial_run *f, list *notes) {
     size_t k = f->edge_variable;
     if (isfinite(f->edge))
         list_print(notes,
@@ -286,7 +286,7 @@ static void tell_edge(const plan *p, const trial_run *f, list *notes) {
 }
 
 /* When rounding errors of a chaotic orbit are as large as it is. */
-static void tell_horizon(const plan *p, const trial_run *f, list *notes) {
+static void horizon_notes(const plan *p, const trial_run *f, list *notes) {
     const char *unit = nevh_scene_label(p->scene, "t");
     const char *space = *unit ? " " : "", *per = *unit ? "/" : "";
     double start = p->run->t_start, grown = -log(DBL_EPSILON);
@@ -307,7 +307,7 @@ static void tell_horizon(const plan *p, const trial_run *f, list *notes) {
 }
 
 /* Notes the time followed, and its meaning for a longer run. */
-static void tell_outlook(const plan *p, const trial_run *f, list *notes) {
+static void outlook_notes(const plan *p, const trial_run *f, list *notes) {
     const char *unit = nevh_scene_label(p->scene, "t");
     const char *space = *unit ? " " : "", *per = *unit ? "/" : "";
     double time = f->chaos.report.t - p->run->t_start;
@@ -318,7 +318,7 @@ static void tell_outlook(const plan *p, const trial_run *f, list *notes) {
     }
     switch (f->chaos.report.verdict) {
     case NEVH_CHAOTIC:
-        tell_horizon(p, f, notes);
+        horizon_notes(p, f, notes);
         break;
     case NEVH_UNSTABLE_ORBIT:
         list_print(
@@ -350,7 +350,7 @@ static void tell_outlook(const plan *p, const trial_run *f, list *notes) {
 }
 
 /* Notes changes of H with time that are faster than a step. */
-static void tell_changes(const plan *p, list *notes) {
+static void change_notes(const plan *p, list *notes) {
     const char *unit = nevh_scene_label(p->scene, "t"), *effect = "";
     const char *space = *unit ? " " : "";
     double at, time = nevh_timing_shortest(p->timing, &at, &effect);
@@ -380,14 +380,14 @@ void trial_run_words(const plan *p, const trial_run *f, list *notes) {
                                            : "Highest frequency",
                    f->frequency, per, unit, f->frequency_at, space, unit,
                    p->dt[0] * f->frequency, p->dt[0], space, unit);
-    tell_changes(p, notes);
+    change_notes(p, notes);
     if (f->pace > f->frequency)
         list_print(notes,
                    "Fastest growth: small displacements grow at a rate of "
                    "%.3g%s%s (t = %.4g%s%s); rate dt = %.3g at dt = %.4g%s%s",
                    f->pace, *unit ? "/" : "", unit, f->pace_at, space, unit,
                    p->dt[0] * f->pace, p->dt[0], space, unit);
-    tell_outlook(p, f, notes);
+    outlook_notes(p, f, notes);
     if (isfinite(f->noise))
         list_print(notes,
                    f->noise > 0
@@ -395,7 +395,7 @@ void trial_run_words(const plan *p, const trial_run *f, list *notes) {
                          "of %.1e over the run"
                        : "Gradient: %s adds no rounding error of its own",
                    p->gradients.item[0], f->noise);
-    tell_edge(p, f, notes);
+    edge_notes(p, f, notes);
 }
 
 const char *trial_run_verdict(const trial_run *f, double limit, double dt) {

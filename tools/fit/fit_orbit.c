@@ -156,9 +156,9 @@ static bool follow(fitting *f, nevh_stepper *s, double residual[]) {
     row_times times = measured_times(m);
     times.count = f->used;
     f->plan->t_end = m->t[f->used - 1];
-    trajectory *r =
-        trajectory_new(f->plan, f->now.integrator, s, &times,
-                       (sink){.take = compare_point, .data = &c, .mute = true});
+    trajectory *r = trajectory_new(
+        f->plan, f->now.integrator, s, &times,
+        (row_output){.take = compare_point, .data = &c, .mute = true});
     budget b = {s, f->most};
     trajectory_follow(r, &(trajectory_watch){.signal = &no_signal,
                                              .save = check_budget,

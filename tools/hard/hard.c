@@ -27,10 +27,10 @@ typedef struct {
 } suite;
 
 static int kind_of(const row *r) {
-    return r->ran      ? (int)r->energy.verdict
-           : r->late   ? HARD_STOPPED
-           : r->failed ? HARD_FAILED
-                       : HARD_REFUSED;
+    return r->ran          ? (int)r->energy.verdict
+           : r->over_limit ? HARD_STOPPED
+           : r->failed     ? HARD_FAILED
+                           : HARD_REFUSED;
 }
 
 static const char *kind_name(int kind) {
@@ -56,9 +56,9 @@ static char *command_of(const options *o) {
 }
 
 static char *happened(const row *r) {
-    if (!r->ran && !r->late)
+    if (!r->ran && !r->over_limit)
         return text_print("%s", r->status);
-    if (r->late)
+    if (r->over_limit)
         return text_print("energy error %.1e; stopped after %zu steps",
                           r->energy.max, r->steps);
     if (r->energy.verdict == NEVH_UNSTABLE)
@@ -71,7 +71,7 @@ static char *happened(const row *r) {
 
 static void add_record(table *t, const plan *p, const hard_case *c,
                        const char *repeat, const row *r) {
-    bool measured = r->ran || r->late;
+    bool measured = r->ran || r->over_limit;
     table_text(t, c->name);
     table_text(t, repeat);
     table_text(t, r->integrator);
@@ -157,8 +157,8 @@ static int run_case(suite *all, const options *o, const hard_case *c) {
     int status = plan_make(&p, &own);
     p.dts = p.tolerances = 1;
     p.native = NEVH_NATIVE_NEVER;
-    p.hurried = true; /* rows are finished here, and not timed */
-    p.patience = most_work;
+    p.screening = true; /* rows are finished here, and not timed */
+    p.work_limit = most_work;
     p.follow = most_follow;
     if (!status)
         status = plan_reference(&p, p.t_end);

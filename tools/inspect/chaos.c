@@ -21,7 +21,7 @@ typedef struct {
     page result;
     bool early;
     double started; /* seconds of processor time */
-} job;
+} chaos_job;
 
 /* One integrator with one step. */
 typedef struct {
@@ -35,18 +35,18 @@ typedef struct {
 typedef struct {
     nevh_chaos_report now;
     double *value, *error; /* of each exponent */
-} look;
+} estimates;
 
-static void put_number(const job *j, double x) {
+static void put_number(const chaos_job *j, double x) {
     if (j->options->format == FORMAT_TABLE && isfinite(x))
         table_shown(j->result.table, "%.4g", x);
     else
         table_number(j->result.table, x);
 }
 
-static look look_new(const job *j, const row *r) {
-    look l = {nevh_chaos_result(r->chaos),
-              tool_allocate(2 * j->exponents, sizeof *l.value), NULL};
+static estimates estimates_new(const chaos_job *j, const row *r) {
+    estimates l = {nevh_chaos_result(r->chaos),
+                   tool_allocate(2 * j->exponents, sizeof *l.value), NULL};
     l.error = l.value + j->exponents;
     for (size_t i = 0; i < j->exponents; i++)
         l.value[i] = nevh_chaos_exponent(r->chaos, i, &l.error[i]);
@@ -54,12 +54,12 @@ static look look_new(const job *j, const row *r) {
 }
 
 /* A verdict that finer steps contradict at the end is no better before it. */
-static nevh_chaos_verdict verdict_at(const row *r, const look *l) {
+static nevh_chaos_verdict verdict_at(const row *r, const estimates *l) {
     bool last = l->now.verdict == nevh_chaos_result(r->chaos).verdict;
     return last ? r->confirmed.verdict : l->now.verdict;
 }
 
-static void put_exponents(job *j, const row *r, look *l) {
+static void put_exponents(chaos_job *j, const row *r, estimates *l) {
     nevh_chaos_report now = l->now;
     for (size_t i = 0; i < j->exponents; i++) {
         table_text(j->result.table, j->plan->name);
@@ -76,7 +76,7 @@ static void put_exponents(job *j, const row *r, look *l) {
     free(l->value);
 }
 
-static int fail(job *j, const row *r, char *known) {
+static int fail(chaos_job *j, const row *r, char *known) {
     char *why = text_print("%s, dt = %g: %s", r->integrator, r->dt, known);
     list_print(&j->result.before, "failed: %s", why);
     tool_refuse("%s: %s", j->plan->name, why);
@@ -85,7 +85,7 @@ static int fail(job *j, const row *r, char *known) {
     return TOOL_FAILED;
 }
 
-static char *why_of(const job *j, const row *r) {
+static char *why_of(const chaos_job *j, const row *r) {
     return plan_why(j->plan, nevh_chaos_message(r->chaos));
 }
 
@@ -100,12 +100,12 @@ static bool is_clear(const row *r, int *times) {
 }
 
 /* True if a run twice as long fits the budget. */
-static bool may_double(const job *j) {
+static bool may_double(const chaos_job *j) {
     double budget = j->options->search.budget;
     return budget == 0 || 2 * (cpu_seconds() - j->started) < budget;
 }
 
-static int run_until_clear(const job *j, const row *r) {
+static int run_until_clear(const chaos_job *j, const row *r) {
     double begin = j->plan->run->t_start, span = j->plan->t_end - begin;
     double most = fmax(span, most_steps * r->dt);
     int times = 0, status = nevh_chaos_run(r->chaos, begin + span);
@@ -123,17 +123,17 @@ static void confirm(row *r, int status) {
         r->confirmed.verdict = NEVH_UNRESOLVED;
 }
 
-static int run_history(job *j, row *r) {
+static int run_history(chaos_job *j, row *r) {
     const plan *p = j->plan;
     size_t samples = j->options->samples, count = 0;
     int status = NEVH_OK;
-    look *looks = tool_allocate(samples, sizeof *looks);
+    estimates *looks = tool_allocate(samples, sizeof *looks);
     for (size_t i = 1; !status && i <= samples; i++) {
         double part = (double)i / (double)samples;
         status = nevh_chaos_run(
             r->chaos, p->run->t_start + part * (p->t_end - p->run->t_start));
         if (!status)
-            looks[count++] = look_new(j, r);
+            looks[count++] = estimates_new(j, r);
     }
     confirm(r, status);
     for (size_t i = 0; i < count; i++)
@@ -142,20 +142,20 @@ static int run_history(job *j, row *r) {
     return status ? fail(j, r, why_of(j, r)) : TOOL_OK;
 }
 
-static int run_row(job *j, row *r) {
+static int run_row(chaos_job *j, row *r) {
     if (j->options->samples)
         return run_history(j, r);
     int status = j->options->t_end ? nevh_chaos_run(r->chaos, j->plan->t_end)
                                    : run_until_clear(j, r);
     confirm(r, status);
     if (nevh_chaos_result(r->chaos).t > j->plan->run->t_start) {
-        look l = look_new(j, r);
+        estimates l = estimates_new(j, r);
         put_exponents(j, r, &l);
     }
     return status ? fail(j, r, why_of(j, r)) : TOOL_OK;
 }
 
-static void note_row(job *j, const row *r) {
+static void note_row(chaos_job *j, const row *r) {
     const char *why;
     list *notes = &j->result.before;
     if (!nevh_chaos_is_tangent(r->chaos, &why))
@@ -168,7 +168,7 @@ static void note_row(job *j, const row *r) {
 }
 
 /* Finer steps find another orbit, or leave open what it is. */
-static void say_unresolved(job *j, const row *r) {
+static void unresolved_words(chaos_job *j, const row *r) {
     const nevh_chaos_confirmation *c = &r->confirmed;
     nevh_chaos_verdict steps = nevh_chaos_result(r->chaos).verdict;
     nevh_chaos_verdict finer = c->found.report.verdict;
@@ -190,10 +190,10 @@ static void say_unresolved(job *j, const row *r) {
     free(what);
 }
 
-static void say_row(job *j, const row *r) {
+static void row_words(chaos_job *j, const row *r) {
     nevh_chaos_report now = nevh_chaos_result(r->chaos);
     if (r->confirmed.verdict == NEVH_UNRESOLVED) {
-        say_unresolved(j, r);
+        unresolved_words(j, r);
         return;
     }
     double error, value = nevh_chaos_exponent(r->chaos, 0, &error);
@@ -230,7 +230,7 @@ static void say_row(job *j, const row *r) {
 
 /* Notes a change of the energy: the exponents are those of the scheme's own map,
    whose orbits may keep no energy. */
-static void note_energy(job *j, const row *r) {
+static void note_energy(chaos_job *j, const row *r) {
     const plan *p = j->plan;
     nevh_options o = plan_options(p, p->gradients.item[0]);
     nevh_stepper *s = plan_stepper(p, r->integrator);
@@ -257,7 +257,7 @@ static void note_energy(job *j, const row *r) {
     nevh_stepper_free(s);
 }
 
-static int run_one(job *j, const char *integrator, double dt) {
+static int run_one(chaos_job *j, const char *integrator, double dt) {
     const plan *p = j->plan;
     bool transformed;
     nevh_options o = plan_options(p, p->gradients.item[0]);
@@ -283,7 +283,7 @@ static int run_one(job *j, const char *integrator, double dt) {
         note_row(j, &r);
         table_group(j->result.table);
         if (!status)
-            say_row(j, &r);
+            row_words(j, &r);
         if (!status && !p->balance)
             note_energy(j, &r);
     }
@@ -292,7 +292,7 @@ static int run_one(job *j, const char *integrator, double dt) {
 }
 
 /* All steps that were given, or the scene's first. */
-static int run_steps(job *j, const char *integrator) {
+static int run_steps(chaos_job *j, const char *integrator) {
     size_t count = j->options->dt.count ? j->plan->dts : 1;
     int worst = TOOL_OK;
     for (size_t i = 0; worst != TOOL_USAGE && i < count; i++) {
@@ -317,7 +317,7 @@ static const char *first_of(const plan *p) {
     return NULL;
 }
 
-static int run_all(job *j) {
+static int run_all(chaos_job *j) {
     const plan *p = j->plan;
     int worst = TOOL_OK;
     if (!j->options->integrators.count) {
@@ -342,7 +342,7 @@ static int run_all(job *j) {
     return worst;
 }
 
-static int check_numbers(job *j) {
+static int check_numbers(chaos_job *j) {
     size_t most = 2 * j->plan->n;
     j->exponents = j->options->chaos.all         ? most
                    : j->options->chaos.exponents ? j->options->chaos.exponents
@@ -360,10 +360,10 @@ static int check_numbers(job *j) {
 }
 
 static int chaos_of(const options *o, const plan *p) {
-    job j = {.plan = p,
-             .options = o,
-             .result = {.table = table_new()},
-             .started = cpu_seconds()};
+    chaos_job j = {.plan = p,
+                   .options = o,
+                   .result = {.table = table_new()},
+                   .started = cpu_seconds()};
     int status = check_numbers(&j);
     table_titles(j.result.table, chaos_command.columns);
     if (!status) {

@@ -9,22 +9,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void tell_finding(const nevh_probe *probe, nevh_question question,
-                         list *notes) {
+static void finding_notes(const nevh_probe *probe, nevh_question question,
+                          list *notes) {
     nevh_finding f = nevh_probe_finding(probe, question);
-    bool told = f.term && (!f.holds || question == NEVH_IS_REVERSIBLE);
+    bool has_term = f.term && (!f.holds || question == NEVH_IS_REVERSIBLE);
     list_print(notes, "  %-24s %-3s  %.1e  %.1e%s%s",
                nevh_question_name(question), f.holds ? "yes" : "no", f.evidence,
-               f.limit, told ? "  " : "", told ? f.term : "");
+               f.limit, has_term ? "  " : "", has_term ? f.term : "");
 }
 
 /* On the orbit a Taylor series knows better than differences beside it. */
-static void tell_smooth(const plan *p, const nevh_probe *probe, list *notes) {
+static void smoothness_notes(const plan *p, const nevh_probe *probe,
+                             list *notes) {
     char *why = NULL;
     smoothness on_way = smoothness_on_way(p, &why);
     nevh_finding f = nevh_probe_finding(probe, NEVH_IS_SMOOTH);
     if (on_way == SMOOTHNESS_UNKNOWN || (on_way == SMOOTHNESS_ALL) == f.holds)
-        tell_finding(probe, NEVH_IS_SMOOTH, notes);
+        finding_notes(probe, NEVH_IS_SMOOTH, notes);
     else
         list_print(notes,
                    "  %-24s %-3s  %.1e  %.1e  on the orbit, by a Taylor "
@@ -36,7 +37,7 @@ static void tell_smooth(const plan *p, const nevh_probe *probe, list *notes) {
     free(why);
 }
 
-static void tell_probes(const plan *p, list *notes) {
+static void probe_notes(const plan *p, list *notes) {
     enum { SHOWN = 8 };
     nevh_options o = plan_options(p, p->gradients.item[0]);
     nevh_probe *probe = nevh_probe_new(p->system, &o);
@@ -49,9 +50,9 @@ static void tell_probes(const plan *p, list *notes) {
                         "deviation, and the deviation that rounding explains");
         for (int i = 0; i < NEVH_FINDINGS; i++)
             if (i == NEVH_IS_SMOOTH)
-                tell_smooth(p, probe, notes);
+                smoothness_notes(p, probe, notes);
             else
-                tell_finding(probe, (nevh_question)i, notes);
+                finding_notes(probe, (nevh_question)i, notes);
         list_add(notes, "Lengths over which H varies:");
         for (size_t k = 0; k < p->n && k < SHOWN; k++)
             list_print(notes, "  %s: %.2g, p_%s: %.2g",
@@ -63,7 +64,7 @@ static void tell_probes(const plan *p, list *notes) {
     nevh_probe_free(probe);
 }
 
-static void tell_state(const plan *p, list *notes) {
+static void energy_notes(const plan *p, list *notes) {
     nevh_options o = plan_options(p, p->gradients.item[0]);
     o.gradient = nevh_central2;
     o.gradient_step = 1e-3; /* unused: H alone is asked for */
@@ -247,7 +248,7 @@ static void add_scheme(fitting *f, const nevh_integrator *scheme) {
     nevh_stepper_free(s);
 }
 
-static void tell_others(const fitting *f, list *words) {
+static void other_words(const fitting *f, list *words) {
     list_add(words,
              "stable below: the largest omega dt at which the steps of a small "
              "oscillation stay bounded (never: they grow at any); of large "
@@ -272,7 +273,7 @@ static void add_schemes(fitting *f, page *result) {
     for (size_t i = 0; (scheme = plan_scheme_at(f->plan, i)); i++)
         add_scheme(f, scheme);
     if (!f->why)
-        tell_others(f, &result->after);
+        other_words(f, &result->after);
     list_free(&f->refused.names);
     list_free(&f->refused.reasons);
     list_free(&f->others);
@@ -284,8 +285,8 @@ static int check_plan(const options *o, const plan *p) {
     trial_run ahead = trial_run_new(p, true);
     if (!o->quiet || !is_table) {
         plan_notes(p, &result.before);
-        tell_state(p, &result.before);
-        tell_probes(p, &result.before);
+        energy_notes(p, &result.before);
+        probe_notes(p, &result.before);
         trial_run_words(p, &ahead, &result.before);
         conserved_words(p, &result.before);
         tell_tables(p, &result.before);

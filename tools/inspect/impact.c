@@ -161,7 +161,8 @@ static list ruled_out(const both *b) {
     return names;
 }
 
-static void say_end(const char *effect, bool on, const trace *o, list *words) {
+static void end_words(const char *effect, bool on, const trace *o,
+                      list *words) {
     const char *with = on ? "With" : "Without";
     if (o->status)
         list_print(words, "%s %s the run fails: %s", with, effect, o->message);
@@ -170,8 +171,8 @@ static void say_end(const char *effect, bool on, const trace *o, list *words) {
                    o->stopped);
 }
 
-static void say(const char *effect, const both *b, const char *names,
-                size_t count, list *words) {
+static void effect_words(const char *effect, const both *b, const char *names,
+                         size_t count, list *words) {
     if (count)
         list_print(words, "%s rules out %zu integrator%s: %s.", effect, count,
                    count > 1 ? "s" : "", names);
@@ -194,7 +195,7 @@ static void say(const char *effect, const both *b, const char *names,
                    "it; give others with --integrators.",
                    effect);
     for (int on = 0; b->integrator && on < 2; on++)
-        say_end(effect, on, &b->trace[on], words);
+        end_words(effect, on, &b->trace[on], words);
     if (is_essential(b))
         list_print(words,
                    "Without %s no coordinate moves: there is no orbit to "
@@ -230,11 +231,12 @@ static bool put_row(const options *o, const char *effect, bool on,
     table_text(t, effect);
     table_text(t, on ? "on" : "off");
     table_text(t, b->integrator);
-    bool told = b->ran && !(shown && is_essential(b));
-    put(result, told, shown ? "%.1e" : NULL, d.at_end);
-    put(result, told, shown ? "%.1e" : NULL, d.largest);
-    put(result, told, shown ? "%.4g" : NULL, d.since);
-    put(result, told, shown ? "%+.1e" : NULL, (c->energy - a->energy) / scale);
+    bool compared = b->ran && !(shown && is_essential(b));
+    put(result, compared, shown ? "%.1e" : NULL, d.at_end);
+    put(result, compared, shown ? "%.1e" : NULL, d.largest);
+    put(result, compared, shown ? "%.4g" : NULL, d.since);
+    put(result, compared, shown ? "%+.1e" : NULL,
+        (c->energy - a->energy) / scale);
     put(result, b->ran && a->work > 0, shown ? "%.2f" : NULL,
         c->work / a->work);
     put(result, b->ran && a->seconds > 0, shown ? "%.2f" : NULL,
@@ -243,14 +245,14 @@ static bool put_row(const options *o, const char *effect, bool on,
         table_number(t, (double)count);
     else
         table_text(t, names);
-    say(effect, b, names, count, &result->after);
+    effect_words(effect, b, names, count, &result->after);
     list_free(&out);
     free(names);
-    return told && d.largest > far_apart && !rests(a) && !rests(c);
+    return compared && d.largest > far_apart && !rests(a) && !rests(c);
 }
 
 /* Differences that chaos makes, of effects of any size. */
-static void say_chaos(const plan *p, list *words) {
+static void chaos_words(const plan *p, list *words) {
     trial_run found = trial_run_new(p, true);
     const char *unit = nevh_scene_label(p->scene, "t");
     if (found.chaos.report.verdict == NEVH_CHAOTIC)
@@ -288,7 +290,7 @@ static int add_all(const options *o, plan *p, page *result, plot **to) {
         free(effect);
     }
     if (apart)
-        say_chaos(p, &result->after);
+        chaos_words(p, &result->after);
     bool failed = why && !ran;
     if (failed)
         tool_refuse("%s: no effect can be compared: the run fails: %s", p->name,

@@ -276,7 +276,7 @@ static void note(const flow_job *j, const options *o, list *notes) {
 }
 
 /* Notes the change by a scheme of the area, which the exact flow of H keeps. */
-static void tell_change(const flow_row *r, double ratio, double t, list *to) {
+static void change_words(const flow_row *r, double ratio, double t, list *to) {
     const char *way = ratio > 1 ? "grows" : "shrinks";
     if (fabs(ratio - 1) < 0.1)
         list_print(to, "%s, dt = %g: the area %s by %.1e of it by t = %.6g.",
@@ -306,7 +306,7 @@ static void words(const flow_job *j, list *to) {
         }
         if (!isnan(last.area) && strcmp(symplectic(j, r), "yes") != 0 &&
             !j->plan.friction)
-            tell_change(r, last.area / first, last.t, to);
+            change_words(r, last.area / first, last.t, to);
         if (r->status)
             list_print(to, "%s %s", r->integrator, r->status);
     }

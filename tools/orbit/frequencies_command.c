@@ -39,10 +39,10 @@ typedef struct {
     table *table;
     list words;
     int worst;
-} job;
+} frequencies_job;
 
 /* Finds the lengths over which H varies in the coordinates that are observed. */
-static void find_lengths(job *j) {
+static void find_lengths(frequencies_job *j) {
     const plan *p = &j->plan;
     nevh_options o = plan_options(p, p->gradients.item[0]);
     nevh_probe *probe = nevh_probe_new(p->system, &o);
@@ -54,7 +54,7 @@ static void find_lengths(job *j) {
     nevh_probe_free(probe);
 }
 
-static int choose(job *j, const options *o) {
+static int choose(frequencies_job *j, const options *o) {
     const plan *p = &j->plan;
     j->count = o->observable             ? 1
                : p->n < MOST_COORDINATES ? p->n
@@ -80,7 +80,7 @@ static int choose(job *j, const options *o) {
 
 static int take(void *data, size_t step, double t, const double q[],
                 const double p[]) {
-    job *j = data;
+    frequencies_job *j = data;
     j->begin = step ? j->begin : t;
     j->end = t;
     if (step % j->finer)
@@ -100,7 +100,8 @@ static int take(void *data, size_t step, double t, const double q[],
 /* A run at dt / finer.
    why      out: the reason, to be freed
    returns  0; -1 refused; else a status */
-static int run(job *j, const char *integrator, size_t finer, char **why) {
+static int run(frequencies_job *j, const char *integrator, size_t finer,
+               char **why) {
     const plan *p = &j->plan;
     nevh_stepper *s = plan_stepper(p, integrator);
     bool transformed;
@@ -146,8 +147,8 @@ static char *straighten(const observed *a) {
                : text_print("cos(%.17g*%s)", turn / a->period, a->name);
 }
 
-static void add_row(job *j, const options *o, const char *integrator,
-                    const spectrum *of, size_t k) {
+static void add_row(frequencies_job *j, const options *o,
+                    const char *integrator, const spectrum *of, size_t k) {
     const nevh_spectral_line *l = &of->line[k];
     const char *name = of->name;
     size_t rank = k + 1;
@@ -200,8 +201,9 @@ static bool is_monotone(const double x[], size_t count) {
 
 /* Refuses a column that grows steadily, which is no sum of oscillations.
    returns  true if it does, with the reason in the words */
-static bool judge_line(job *j, const char *integrator, const char *name,
-                       const double x[], size_t count, double h) {
+static bool judge_line(frequencies_job *j, const char *integrator,
+                       const char *name, const double x[], size_t count,
+                       double h) {
     static const double straight = 0.9;
     double n = (double)count, mean = 0, tt = 0, tx = 0, xx = 0;
     for (size_t k = 0; k < count; k++)
@@ -227,8 +229,8 @@ static bool judge_line(job *j, const char *integrator, const char *name,
 
 /* Notes that only the beginning of the run is analysed, when samples of all of it
    do not fit. */
-static void judge_length(job *j, const char *integrator, const char *name,
-                         double length, double run) {
+static void judge_length(frequencies_job *j, const char *integrator,
+                         const char *name, double length, double run) {
     if (length < 0.49 * run)
         list_print(&j->words,
                    "%s, %s: of the first %.6g of the run: there is no room for "
@@ -237,7 +239,7 @@ static void judge_length(job *j, const char *integrator, const char *name,
 }
 
 /* A frequency that moves is none. */
-static void judge(job *j, const char *integrator, const char *name,
+static void judge(frequencies_job *j, const char *integrator, const char *name,
                   const nevh_spectral_line *l) {
     static const double moving = 1e-6;
     if (isnan(l->drift))
@@ -266,8 +268,8 @@ static void leave_out_rounding(const observed *a, spectrum *of) {
 
 /* Analyses the last samples.
    returns  TOOL_OK, also if there is no line; TOOL_USAGE, with a message */
-static int find_spectrum(job *j, const char *integrator, observed *a, bool told,
-                         spectrum *of) {
+static int find_spectrum(frequencies_job *j, const char *integrator,
+                         observed *a, bool reports, spectrum *of) {
     size_t count, words = j->words.count;
     double h;
     of->name = straighten(a);
@@ -279,7 +281,7 @@ static int find_spectrum(job *j, const char *integrator, observed *a, bool told,
                            j->plan.name, count);
     if (status == NEVH_ENOMEM)
         return tool_refuse("out of memory");
-    if (status == NEVH_EDOM && told) {
+    if (status == NEVH_EDOM && reports) {
         list_print(&j->words, "%s, %s failed: it is not finite", integrator,
                    of->name);
         tool_refuse("%s: %s, %s failed: it is not finite", j->plan.name,
@@ -287,19 +289,19 @@ static int find_spectrum(job *j, const char *integrator, observed *a, bool told,
         j->worst = TOOL_FAILED;
     }
     leave_out_rounding(a, of);
-    if (!status && !of->found && told)
+    if (!status && !of->found && reports)
         list_print(&j->words, "%s, %s: it does not move.", integrator,
                    of->name);
     if (!of->found)
         return TOOL_OK;
     if (judge_line(j, integrator, of->name, values, count, h))
         of->found = 0;
-    else if (told)
+    else if (reports)
         judge(j, integrator, of->name, &of->line[0]);
-    if (told)
+    if (reports)
         judge_length(j, integrator, of->name, h * (double)(count - 1),
                      j->end - j->begin);
-    while (!told && j->words.count > words)
+    while (!reports && j->words.count > words)
         free(j->words.item[--j->words.count]);
     return TOOL_OK;
 }
@@ -328,7 +330,7 @@ static void compare_lines(spectrum *of, const spectrum *finer, int order) {
     }
 }
 
-static int order_of(const job *j, const char *integrator) {
+static int order_of(const frequencies_job *j, const char *integrator) {
     nevh_stepper *s = plan_stepper(&j->plan, integrator);
     int order = nevh_stepper_order(s);
     nevh_stepper_free(s);
@@ -336,7 +338,7 @@ static int order_of(const job *j, const char *integrator) {
 }
 
 /* The errors of the lines that were found. */
-static int confirm(job *j, const char *integrator, spectrum *all) {
+static int confirm(frequencies_job *j, const char *integrator, spectrum *all) {
     char *why = NULL;
     int order = order_of(j, integrator), status = TOOL_OK;
     bool ran = !run(j, integrator, 2, &why);
@@ -354,7 +356,8 @@ static int confirm(job *j, const char *integrator, spectrum *all) {
     return status;
 }
 
-static int analyse(job *j, const options *o, const char *integrator) {
+static int analyse(frequencies_job *j, const options *o,
+                   const char *integrator) {
     spectrum *all = tool_allocate(j->count, sizeof *all);
     size_t lines = 0;
     int status = TOOL_OK;
@@ -378,7 +381,8 @@ static int analyse(job *j, const options *o, const char *integrator) {
 }
 
 /* Analyses the run of one integrator. */
-static int run_and_analyse(job *j, const options *o, const char *integrator) {
+static int run_and_analyse(frequencies_job *j, const options *o,
+                           const char *integrator) {
     char *why = NULL;
     int status = run(j, integrator, 1, &why);
     if (status)
@@ -392,7 +396,7 @@ static int run_and_analyse(job *j, const options *o, const char *integrator) {
     return status ? TOOL_OK : analyse(j, o, integrator);
 }
 
-static void make_table(job *j, const options *o) {
+static void make_table(frequencies_job *j, const options *o) {
     j->table = table_new();
     if (o->format == FORMAT_TABLE)
         table_titles(j->table, "integrator,observable,rank,frequency,error,"
@@ -401,7 +405,7 @@ static void make_table(job *j, const options *o) {
         table_titles(j->table, frequencies_command.columns);
 }
 
-static void note(const job *j, const options *o, list *notes) {
+static void note(const frequencies_job *j, const options *o, list *notes) {
     const plan *p = &j->plan;
     plan_notes(p, notes);
     settings_notes(o, notes);
@@ -414,7 +418,7 @@ static void note(const job *j, const options *o, list *notes) {
              "run at half the step; resolution: without that");
 }
 
-static int analyse_all(job *j, const options *o) {
+static int analyse_all(frequencies_job *j, const options *o) {
     page result = {0};
     int status = TOOL_OK;
     make_table(j, o);
@@ -432,7 +436,7 @@ static int analyse_all(job *j, const options *o) {
 }
 
 static int frequencies(const options *o) {
-    job j = {.worst = TOOL_OK};
+    frequencies_job j = {.worst = TOOL_OK};
     int status = plan_make(&j.plan, o);
     if (!status)
         status = choose(&j, o);

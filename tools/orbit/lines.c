@@ -40,7 +40,7 @@ int lines_open(line_file *l, const char *name) {
 }
 
 /* Replaces the earlier file once the first lines could be written. */
-static void settle(line_file *l) {
+static void replace_file(line_file *l) {
     l->waits = false;
     if (output_close(&l->claimed, l->stuck ? TOOL_USAGE : TOOL_OK))
         l->stuck = true;
@@ -150,7 +150,7 @@ int lines_flush(line_file *l) {
     if (whole < written && l->regular && ftruncate(l->file, (off_t)l->bytes))
         unwritten(l);
     if (l->waits)
-        settle(l);
+        replace_file(l);
     return l->stuck ? TOOL_USAGE : TOOL_OK;
 }
 

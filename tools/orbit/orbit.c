@@ -101,7 +101,7 @@ int orbit_follow(orbit *o, const row_times *times, size_t columns,
     nevh_stepper *s = plan_stepper(&o->plan, o->integrator);
     trajectory *r =
         trajectory_new(&o->plan, o->integrator, s, times,
-                       (sink){.take = take, .data = &f, .mute = quiet});
+                       (row_output){.take = take, .data = &f, .mute = quiet});
     o->status = trajectory_follow(r, &(trajectory_watch){.signal = &no_signal});
     trajectory_free(r);
     nevh_stepper_free(s);

@@ -128,7 +128,7 @@ static int check_measured(const run_picture *picture, const column_panels *c) {
                      : TOOL_OK;
 }
 
-static char *say_more(const run_picture *picture, const char *cut) {
+static char *note_text(const run_picture *picture, const char *cut) {
     const plan *p = &picture->plan;
     char *energy = plot_energy_at_start(p), *others = text_print("%s", "");
     if (p->n > MOST_COORDINATES && !picture->options->columns) {
@@ -195,7 +195,7 @@ plot *plot_phase(run_picture *picture) {
         char *cut = follow_and_cut(picture, &c);
         for (size_t i = 0; i < c.panels; i++)
             draw_panel(&to, picture, &c, i);
-        char *more = say_more(picture, cut);
+        char *more = note_text(picture, cut);
         picture_note(picture, to, more);
         free(more);
         free(cut);

@@ -27,7 +27,7 @@ typedef struct {
     orbits_of *of;
     size_t count;
     levels levels;
-} job;
+} portrait_job;
 
 static int take(void *data, size_t step, double t, const double q[],
                 const double p[]) {
@@ -44,19 +44,20 @@ static int take(void *data, size_t step, double t, const double q[],
     return 0;
 }
 
-static double end_of(const job *j, const options *o) {
+static double end_of(const portrait_job *j, const options *o) {
     const plan *p = &j->plan;
     double usual = p->run->t_start + USUAL_STEPS * p->dt[0];
     return o->t_end ? p->t_end : fmin(p->t_end, usual);
 }
 
-static char *why_of(const job *j, const orbits_of *o, const char *message) {
+static char *why_of(const portrait_job *j, const orbits_of *o,
+                    const char *message) {
     return j->members.several
                ? member_why(&j->plan, j->members.number[o->at], message)
                : plan_why(&j->plan, message);
 }
 
-static void run_orbits(job *j, orbits_of *o) {
+static void run_orbits(portrait_job *j, orbits_of *o) {
     const plan *p = &j->plan;
     nevh_stepper *s = plan_stepper(p, o->integrator);
     o->symplectic = nevh_integrator_symplectic(plan_scheme(
@@ -82,7 +83,7 @@ static void run_orbits(job *j, orbits_of *o) {
 }
 
 /* Into the period round 0. */
-static double wrapped(const job *j, double x) {
+static double wrapped(const portrait_job *j, double x) {
     double period = nevh_scene_period(j->plan.scene, 0);
     return period > 0 ? x - period * floor(x / period + 0.5) : x;
 }
@@ -93,7 +94,7 @@ static bool is_symplectic(const orbits_of *o) {
 
 /* The range of symplectic integrators, if there are any, with a margin; of an angle
    a period. */
-static portrait_window find_window(const job *j) {
+static portrait_window find_window(const portrait_job *j) {
     static const double room = 0.2;
     portrait_window w = {INFINITY, -INFINITY, INFINITY, -INFINITY};
     double period = nevh_scene_period(j->plan.scene, 0);
@@ -126,7 +127,7 @@ static int by_size(const void *a, const void *b) {
 
 /* Chooses energies of members, if they are many; of a single member, energies up to
    it and beyond. */
-static size_t choose_levels(const job *j, double energy[MOST_LEVELS]) {
+static size_t choose_levels(const portrait_job *j, double energy[MOST_LEVELS]) {
     size_t count = j->members.count, chosen = 0;
     double *all = tool_allocate(count, sizeof *all);
     for (size_t i = 0; i < count; i++)
@@ -146,7 +147,7 @@ static size_t choose_levels(const job *j, double energy[MOST_LEVELS]) {
     return chosen;
 }
 
-static void draw_orbits(const job *j, const orbits_of *o, plot *to) {
+static void draw_orbits(const portrait_job *j, const orbits_of *o, plot *to) {
     size_t series = 0;
     for (size_t k = 0, next = 0; k < o->count; k++) {
         for (; next <= o->member[k]; next++) {
@@ -159,7 +160,7 @@ static void draw_orbits(const job *j, const orbits_of *o, plot *to) {
     }
 }
 
-static void draw_measured(const job *j, plot *to) {
+static void draw_measured(const portrait_job *j, plot *to) {
     const measured *m = &j->data;
     size_t series = m->points ? plot_series(to, "measured") : 0;
     if (m->points)
@@ -171,7 +172,7 @@ static void draw_measured(const job *j, plot *to) {
 }
 
 /* The largest change of H along an orbit. */
-static double energy_change(const job *j, const orbits_of *o) {
+static double energy_change(const portrait_job *j, const orbits_of *o) {
     double most = 0, first = NAN;
     for (size_t k = 0; k < o->count; k++) {
         double h =
@@ -184,7 +185,7 @@ static double energy_change(const job *j, const orbits_of *o) {
 }
 
 /* Orbits of a drive, or under friction, leave the levels of H. */
-static char *heading_of(const job *j, const orbits_of *o) {
+static char *heading_of(const portrait_job *j, const orbits_of *o) {
     const plan *p = &j->plan;
     const char *unit = nevh_scene_label(p->scene, "energy");
     const char *failed = o->failed ? ", then failed" : "";
@@ -196,7 +197,7 @@ static char *heading_of(const job *j, const orbits_of *o) {
                       energy_change(j, o), *unit ? " " : "", unit, failed);
 }
 
-static plot *draw_plane(job *j) {
+static plot *draw_plane(portrait_job *j) {
     const plan *p = &j->plan;
     const char *name = nevh_scene_coordinate(p->scene, 0);
     char *momentum = text_print("p_%s", name);
@@ -229,7 +230,7 @@ static plot *draw_plane(job *j) {
     return to;
 }
 
-static int run_plane(job *j, plot **to, const options *o) {
+static int run_plane(portrait_job *j, plot **to, const options *o) {
     int worst = members_tell(&j->members, &j->plan);
     j->plan.t_end = end_of(j, o);
     j->count = j->plan.integrators.count;
@@ -251,7 +252,7 @@ static int run_plane(job *j, plot **to, const options *o) {
 }
 
 /* A plane of section. */
-static int run_section(job *j, plot **to, const options *o) {
+static int run_section(portrait_job *j, plot **to, const options *o) {
     int worst = members_tell(&j->members, &j->plan);
     for (size_t i = 0; i < j->plan.integrators.count; i++) {
         int status =
@@ -266,7 +267,7 @@ static int run_section(job *j, plot **to, const options *o) {
                              j->plan.name);
 }
 
-static int read_data(job *j, const options *o) {
+static int read_data(portrait_job *j, const options *o) {
     if (!o->fit.data)
         return TOOL_OK;
     if (j->plan.n > 1)
@@ -290,7 +291,7 @@ static int read_data(job *j, const options *o) {
 }
 
 /* True if it is an equilibrium found before, shifted by a period. */
-static bool is_again(const job *j, size_t i) {
+static bool is_again(const portrait_job *j, size_t i) {
     const equilibrium *found = j->levels.found, *e = &found[i];
     const portrait_window *w = &j->levels.window;
     double period = nevh_scene_period(j->plan.scene, 0);
@@ -302,7 +303,7 @@ static bool is_again(const job *j, size_t i) {
 }
 
 /* Prints the equilibria, those near the start first. */
-static void print_equilibria(const job *j) {
+static void print_equilibria(const portrait_job *j) {
     enum { MOST_SHOWN = 200 };
     static const char *const kinds[] = {"centre", "saddle", "degenerate"};
     _Static_assert(sizeof kinds / sizeof *kinds == PORTRAIT_KINDS, "each kind");
@@ -331,7 +332,7 @@ static void print_equilibria(const job *j) {
             "start is listed\n");
 }
 
-static void print_notes(const job *j, const options *o) {
+static void print_notes(const portrait_job *j, const options *o) {
     if (o->quiet)
         return;
     printf("%s: %zu orbit%s by each integrator\n",
@@ -343,14 +344,14 @@ static void print_notes(const job *j, const options *o) {
             printf("%s %s\n", j->of[i].integrator, j->of[i].status);
 }
 
-static void tell_failures(const job *j) {
+static void print_failures(const portrait_job *j) {
     for (size_t i = 0; i < j->count; i++)
         if (j->of[i].failed)
             tool_refuse("%s: %s %s", j->plan.name, j->of[i].integrator,
                         j->of[i].status);
 }
 
-static int draw(job *j, const options *o) {
+static int draw(portrait_job *j, const options *o) {
     plot *to = NULL;
     int status = j->plan.n == 1 ? run_plane(j, &to, o) : run_section(j, &to, o);
     if (status == TOOL_USAGE) {
@@ -371,12 +372,12 @@ static int draw(job *j, const options *o) {
     plot_free(to);
     if (!drawn)
         print_notes(j, o);
-    tell_failures(j);
+    print_failures(j);
     return drawn ? drawn : status;
 }
 
 static int portrait(const options *o) {
-    job j = {0};
+    portrait_job j = {0};
     if (!plot_wanted(o))
         return tool_refuse("nevh portrait draws: give --plot FILE.svg, or "
                            "--plot - for the terminal");

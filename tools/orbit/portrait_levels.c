@@ -154,12 +154,12 @@ void levels_draw(const levels *l, plot *to, const double energy[],
         plot_style(to, series, PLOT_SEPARATRIX);
     }
     for (size_t i = 0; any && i < l->count; i++) {
-        bool told = l->found[i].kind != PORTRAIT_SADDLE;
-        for (size_t k = 0; !told && k < i; k++)
-            told = l->found[k].kind == PORTRAIT_SADDLE &&
-                   fabs(l->found[k].energy - l->found[i].energy) <=
-                       1e-9 * fabs(l->found[i].energy);
-        if (!told)
+        bool known = l->found[i].kind != PORTRAIT_SADDLE;
+        for (size_t k = 0; !known && k < i; k++)
+            known = l->found[k].kind == PORTRAIT_SADDLE &&
+                    fabs(l->found[k].energy - l->found[i].energy) <=
+                        1e-9 * fabs(l->found[i].energy);
+        if (!known)
             draw_level(l, to, series, l->found[i].energy);
     }
     draw_equilibria(l, to);

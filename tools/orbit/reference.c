@@ -28,7 +28,7 @@ typedef struct {
     size_t count;
     double budget, begun, shown; /* in seconds of processor time */
     bool progress;               /* to be shown on stderr */
-} job;
+} reference_job;
 
 static char *name_of(const plan *p, size_t k) {
     return text_print("%s%s", k < p->n ? "" : "p_",
@@ -47,7 +47,7 @@ static char *time_text(moment at) {
                         : tool_owned(nevh_certain_number(at.time, at.rest));
 }
 
-static void put_state(job *j, moment at, table *rows) {
+static void put_state(reference_job *j, moment at, table *rows) {
     double t = at.time;
     for (size_t k = 0; k < 2 * j->plan->n; k++) {
         size_t digits = (size_t)nevh_certain_digits(j->orbit, k);
@@ -74,12 +74,12 @@ static void put_state(job *j, moment at, table *rows) {
 }
 
 /* The way that is left is taken to cost what the way behind did. */
-static double seconds_left(const job *j) {
+static double seconds_left(const reference_job *j) {
     double start = j->plan->run->t_start;
     return (cpu_seconds() - j->begun) * (j->end - j->t) / (j->t - start);
 }
 
-static void show_progress(job *j) {
+static void show_progress(reference_job *j) {
     double now = cpu_seconds();
     if (!j->progress || now < j->shown + 1)
         return;
@@ -88,12 +88,12 @@ static void show_progress(job *j) {
             j->end, nevh_certain_series(j->orbit), seconds_left(j));
 }
 
-static void clear_progress(const job *j) {
+static void clear_progress(const reference_job *j) {
     fputs(j->progress ? "\r\033[K" : "", stderr);
 }
 
 /* Before a hundredth of the budget is spent nothing is foreseen. */
-static int check_budget(const job *j) {
+static int check_budget(const reference_job *j) {
     double start = j->plan->run->t_start, spent = cpu_seconds() - j->begun;
     double whole = spent + seconds_left(j);
     if (spent < j->budget / 100 || whole <= j->budget)
@@ -107,7 +107,7 @@ static int check_budget(const job *j) {
 }
 
 /* In parts of a tenth of a second or so; the orbit does not depend on them. */
-static int go(job *j, moment at) {
+static int go(reference_job *j, moment at) {
     bool there = j->t >= at.time;
     while (!there) {
         double before = cpu_seconds(), next = fmin(j->t + j->part, at.time);
@@ -129,7 +129,7 @@ static int go(job *j, moment at) {
     return TOOL_OK;
 }
 
-static int put_states(job *j, table *rows) {
+static int put_states(reference_job *j, table *rows) {
     for (size_t i = 0; i < j->count; i++) {
         int status = go(j, j->moments[i]);
         if (status)
@@ -141,7 +141,7 @@ static int put_states(job *j, table *rows) {
     return TOOL_OK;
 }
 
-static void put_notes(const job *j, page *result) {
+static void put_notes(const reference_job *j, page *result) {
     const plan *p = j->plan;
     plan_notes(p, &result->before);
     list_print(
@@ -188,7 +188,7 @@ static int take_moment(const options *o, nevh_scene *scene, const char *formula,
                : TOOL_OK;
 }
 
-static int take_moments(const options *o, job *j) {
+static int take_moments(const options *o, reference_job *j) {
     const plan *p = j->plan;
     j->count = p->ats ? p->ats : 1;
     j->moments = tool_allocate(j->count, sizeof *j->moments);
@@ -200,7 +200,7 @@ static int take_moments(const options *o, job *j) {
     return status;
 }
 
-static int start_orbit(const options *o, job *j) {
+static int start_orbit(const options *o, reference_job *j) {
     nevh_scene *scene = j->plan->scene;
     j->orbit = nevh_scene_certain(scene, (int)j->digits);
     if (!j->orbit && nevh_scene_status(scene) == NEVH_ENOMEM)
@@ -215,14 +215,15 @@ static int start_orbit(const options *o, job *j) {
 
 static int reference_of(const options *o, const plan *p) {
     double start = p->run->t_start, now = cpu_seconds();
-    job j = {.plan = p,
-             .digits = o->digits ? o->digits : usual_digits,
-             .lost = NAN,
-             .t = start,
-             .budget = o->stop_after > 0 ? o->stop_after : usual_seconds,
-             .begun = now,
-             .shown = now,
-             .progress = !o->quiet && isatty(STDERR_FILENO)};
+    reference_job j = {.plan = p,
+                       .digits = o->digits ? o->digits : usual_digits,
+                       .lost = NAN,
+                       .t = start,
+                       .budget =
+                           o->stop_after > 0 ? o->stop_after : usual_seconds,
+                       .begun = now,
+                       .shown = now,
+                       .progress = !o->quiet && isatty(STDERR_FILENO)};
     j.fewest = j.digits;
     page result = {.table = table_new()};
     int status = take_moments(o, &j);

@@ -28,7 +28,7 @@ typedef struct {
     trajectory *trajectory;
     char *state, *settings; /* NULL: there is nothing to save */
     bool saves;             /* so far it could be saved */
-} job;
+} run_job;
 
 static volatile sig_atomic_t interrupted;
 
@@ -38,7 +38,7 @@ static void note_signal(int number) {
 
 /* Choice of the rows. */
 
-static void take_times(job *j) {
+static void take_times(run_job *j) {
     const plan *p = &j->plan;
     numbers_sort(p->at, p->ats);
     for (size_t i = 0; i < p->ats; i++)
@@ -49,20 +49,20 @@ static void take_times(job *j) {
     j->rows_text = text_print("%s", "at the times asked for");
 }
 
-static void take_samples(job *j, size_t count, const char *why) {
+static void take_samples(run_job *j, size_t count, const char *why) {
     j->rows.by = BY_SAMPLES;
     j->rows.count = count;
     j->rows_text = text_print("%zu at equal times%s", count, why);
 }
 
-static void take_every(job *j, size_t every) {
+static void take_every(run_job *j, size_t every) {
     j->rows.by = BY_STEPS;
     j->rows.every = every;
     j->rows_text = every == 1 ? text_print("after every step")
                               : text_print("after every %zu steps", every);
 }
 
-static int choose_rows(job *j) {
+static int choose_rows(run_job *j) {
     const options *o = j->options;
     double span = j->plan.t_end - j->plan.run->t_start;
     if ((o->every > 0) + (o->samples > 0) + (o->at.count > 0) > 1)
@@ -86,10 +86,10 @@ static int choose_rows(job *j) {
     return TOOL_OK;
 }
 
-static int choose_integrator(job *j) {
+static int choose_integrator(run_job *j) {
     j->stepper = plan_first(&j->plan, &j->integrator);
     if (j->stepper && !nevh_stepper_compiles(j->stepper))
-        plan_tell_native(j->stepper);
+        plan_native_report(j->stepper);
     return j->stepper ? TOOL_OK : TOOL_USAGE;
 }
 
@@ -106,7 +106,7 @@ static int check_options(const options *o) {
 }
 
 /* Sets the rows to the times of --data. */
-static int read_data(job *j) {
+static int read_data(run_job *j) {
     const options *o = j->options;
     if (!o->fit.data)
         return TOOL_OK;
@@ -124,7 +124,7 @@ static void fill_residuals(void *data, double t, const double q[],
     residuals_take(data, t, q, p, values);
 }
 
-static const more_columns *residual_columns(job *j) {
+static const more_columns *residual_columns(run_job *j) {
     const list *names = &j->data.names;
     if (!j->data.points)
         return NULL;
@@ -136,7 +136,7 @@ static const more_columns *residual_columns(job *j) {
     return &j->more;
 }
 
-static void note(job *j) {
+static void note(run_job *j) {
     const plan *p = &j->plan;
     plan_notes(p, &j->notes);
     list_print(&j->notes, "scene: %s", p->name);
@@ -153,7 +153,7 @@ static void note(job *j) {
 }
 
 /* All that the orbit and its rows depend on. */
-static char *describe(const job *j) {
+static char *describe(const run_job *j) {
     const plan *p = &j->plan;
     char *times = text_print("%s", "");
     for (size_t i = 0; j->rows.by == BY_TIMES && i < j->rows.count; i++) {
@@ -178,7 +178,7 @@ static char *describe(const job *j) {
 
 /* Saving. */
 
-static int save(job *j, bool lasting) {
+static int save(run_job *j, bool lasting) {
     run_state *s = trajectory_state(j->trajectory);
     if (lines_flush(&j->lines))
         return TOOL_USAGE;
@@ -196,7 +196,7 @@ static int save_often(void *data) {
     return save(data, true);
 }
 
-static void begin_saving(job *j, const char *name) {
+static void begin_saving(run_job *j, const char *name) {
     j->state = text_print("%s" STATE_ENDING, name);
     j->settings = describe(j);
     j->saves = true;
@@ -204,7 +204,7 @@ static void begin_saving(job *j, const char *name) {
 
 /* Output. */
 
-static int open_new(job *j) {
+static int open_new(run_job *j) {
     const options *o = j->options;
     if (lines_open(&j->lines, o->file))
         return TOOL_USAGE;
@@ -219,7 +219,7 @@ static int open_new(job *j) {
     return status;
 }
 
-static int open_again(job *j) {
+static int open_again(run_job *j) {
     const char *name = j->options->resume;
     run_state *s = trajectory_state(j->trajectory);
     signals_catch(note_signal);
@@ -232,7 +232,7 @@ static int open_again(job *j) {
 }
 
 /* The rest of a run that was told to end. */
-static int give_up(job *j) {
+static int give_up(run_job *j) {
     int number = interrupted;
     const char *name =
         j->options->resume ? j->options->resume : j->options->file;
@@ -246,13 +246,13 @@ static int give_up(job *j) {
     return TOOL_FAILED;
 }
 
-static int follow(job *j, int (*saver)(void *)) {
+static int follow(run_job *j, int (*saver)(void *)) {
     bool progress = !j->options->quiet && isatty(STDERR_FILENO);
     return trajectory_follow(
         j->trajectory, &(trajectory_watch){&interrupted, saver, j, progress});
 }
 
-static int write_lines(job *j) {
+static int write_lines(run_job *j) {
     int status = j->options->resume ? open_again(j) : open_new(j);
     if (!status)
         status = follow(j, save_often);
@@ -270,7 +270,7 @@ static int write_lines(job *j) {
     return status;
 }
 
-static int write_page(job *j, page *result) {
+static int write_page(run_job *j, page *result) {
     result->table = table_new();
     if (j->options->format == FORMAT_TABLE)
         table_round(result->table);
@@ -285,16 +285,16 @@ static int write_page(job *j, page *result) {
     return output_page(j->options, result, status);
 }
 
-static int write_rows(job *j) {
+static int write_rows(run_job *j) {
     const options *o = j->options;
     page result = {0};
     bool pages = option_given(o, "format") && o->format != FORMAT_CSV;
     j->trajectory =
         trajectory_new(&j->plan, j->integrator, j->stepper, &j->rows,
-                       (sink){.lines = &j->lines,
-                              .page = pages ? &result : NULL,
-                              .more = residual_columns(j),
-                              .quiet = o->quiet});
+                       (row_output){.lines = &j->lines,
+                                    .page = pages ? &result : NULL,
+                                    .more = residual_columns(j),
+                                    .quiet = o->quiet});
     note(j);
     int status = pages ? write_page(j, &result) : write_lines(j);
     trajectory_free(j->trajectory);
@@ -302,7 +302,7 @@ static int write_rows(job *j) {
     return status;
 }
 
-static int run_job(job *j) {
+static int run_rows(run_job *j) {
     const options *o = j->options;
     if (choose_rows(j) || choose_integrator(j) || run_plot_check(o, &j->plan))
         return TOOL_USAGE;
@@ -318,17 +318,17 @@ static int run_job(job *j) {
 }
 
 static int run_scene(const options *o) {
-    job j = {.options = o, .lines.file = -1};
+    run_job j = {.options = o, .lines.file = -1};
     int status = check_options(o);
     if (!status)
         status = plan_make(&j.plan, o);
     if (!status)
         status = read_data(&j);
     if (!status)
-        status = run_job(&j);
+        status = run_rows(&j);
     fflush(stdout);
     if (j.stepper)
-        plan_tell_native(j.stepper); /* of a compiler in the background */
+        plan_native_report(j.stepper); /* of a compiler in the background */
     nevh_stepper_free(j.stepper);
     residuals_end(&j.residuals);
     measured_free(&j.data);

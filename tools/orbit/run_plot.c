@@ -253,28 +253,29 @@ static int worst_status(const run_picture *picture) {
 
 int run_plot(const options *o, const plan *p, const char *integrator,
              const row_times *rows) {
-    run_picture is = {.options = o,
-                      .plan = *p,
-                      .orbits = orbits_new(o, p, integrator),
-                      .rows =
-                          o->every || o->samples || o->at.count ? rows : NULL,
-                      .quiet = !plot_replaces_rows(o)};
-    if (o->fit.data && measured_read(&is.data, p, o, NULL))
+    run_picture picture = {.options = o,
+                           .plan = *p,
+                           .orbits = orbits_new(o, p, integrator),
+                           .rows = o->every || o->samples || o->at.count ? rows
+                                                                         : NULL,
+                           .quiet = !plot_replaces_rows(o)};
+    if (o->fit.data && measured_read(&picture.data, p, o, NULL))
         return TOOL_USAGE;
-    measured_bound(&is.data, &is.plan, o);
-    plot *to = kinds[o->plot.kind].draw(&is);
+    measured_bound(&picture.data, &picture.plan, o);
+    plot *to = kinds[o->plot.kind].draw(&picture);
     int status = to ? plot_write(to, o) : TOOL_USAGE;
     if (!status) {
-        plot_say_written(o, &is.orbits.item->plan, is.orbits.item->integrator,
-                         points_of(&is));
-        status = worst_status(&is);
+        plot_written_report(o, &picture.orbits.item->plan,
+                            picture.orbits.item->integrator,
+                            points_of(&picture));
+        status = worst_status(&picture);
     }
     plot_free(to);
-    if (is.plan.reference != p->reference)
-        nevh_reference_free(is.plan.reference);
-    if (is.plan.no_reference != p->no_reference)
-        free(is.plan.no_reference);
-    orbits_free(&is.orbits);
-    measured_free(&is.data);
+    if (picture.plan.reference != p->reference)
+        nevh_reference_free(picture.plan.reference);
+    if (picture.plan.no_reference != p->no_reference)
+        free(picture.plan.no_reference);
+    orbits_free(&picture.orbits);
+    measured_free(&picture.data);
     return status;
 }

@@ -32,7 +32,7 @@ typedef struct {
     size_t failed;  /* members */
     double stopped; /* where the scene's `stop` said; NAN */
     char *ended;    /* how, where that was not at t_end; or NULL */
-} job;
+} section_job;
 
 /* Into (-period/2, period/2], where rounding makes no other of half a period. */
 static double wrapped(double x, double period) {
@@ -58,7 +58,7 @@ static double *new_point(series *s) {
 }
 
 static int keep(void *data, const nevh_point *point) {
-    job *j = data;
+    section_job *j = data;
     series *s = &j->all[point->section];
     if (point->t < j->after)
         return 0;
@@ -87,7 +87,7 @@ static int value(void *data, double t, const double q[], const double p[],
     return status;
 }
 
-static void add_series(job *j, size_t number) {
+static void add_series(section_job *j, size_t number) {
     series *s = &j->all[j->count++];
     s->scene = j->plan->scene;
     s->number = number;
@@ -121,7 +121,7 @@ static int check_names(const plan *p, const list *names) {
 }
 
 /* Within the run, so that something is left. */
-static int take_after(job *j, const plan *p, const options *o) {
+static int take_after(section_job *j, const plan *p, const options *o) {
     j->after = -INFINITY;
     if (!o->after)
         return TOOL_OK;
@@ -135,7 +135,7 @@ static int take_after(job *j, const plan *p, const options *o) {
     return TOOL_OK;
 }
 
-static int choose(job *j, const plan *p, const options *o) {
+static int choose(section_job *j, const plan *p, const options *o) {
     size_t count = nevh_scene_section_count(p->scene);
     j->plan = p;
     if (check_names(p, &o->sections) || take_after(j, p, o))
@@ -147,7 +147,7 @@ static int choose(job *j, const plan *p, const options *o) {
     return TOOL_OK;
 }
 
-static void forget(job *j) {
+static void forget(section_job *j) {
     for (size_t i = 0; i < j->count; i++) {
         free(j->all[i].periods);
         free(j->all[i].numbers);
@@ -158,7 +158,7 @@ static void forget(job *j) {
     free(j->ended);
 }
 
-static nevh_sections *watch(job *j, const nevh_stepper *s) {
+static nevh_sections *watch(section_job *j, const nevh_stepper *s) {
     nevh_section *decl = tool_allocate(j->count, sizeof *decl);
     for (size_t i = 0; i < j->count; i++) {
         const nevh_scene_section *from = j->all[i].decl;
@@ -176,14 +176,14 @@ static nevh_sections *watch(job *j, const nevh_stepper *s) {
 }
 
 /* Explains the end of a run; of several runs that ended early only the first. */
-static int explain(job *j, int status, const nevh_stepper *s,
+static int explain(section_job *j, int status, const nevh_stepper *s,
                    const nevh_sections *x, const nevh_energy *energy) {
     const char *why = nevh_scene_message(j->plan->scene);
     int looking = nevh_sections_status(x);
-    bool told = j->ended != NULL;
-    if (isfinite(j->stopped) && !told)
+    bool is_known = j->ended != NULL;
+    if (isfinite(j->stopped) && !is_known)
         j->ended = stop_words(j->plan, j->stopped);
-    char *doubts = status || told || j->members.several
+    char *doubts = status || is_known || j->members.several
                        ? NULL
                        : plan_doubts(j->plan, energy, status);
     if (doubts) {
@@ -210,7 +210,7 @@ static int explain(job *j, int status, const nevh_stepper *s,
     return TOOL_FAILED;
 }
 
-static int run_member(job *j, nevh_stepper *s) {
+static int run_member(section_job *j, nevh_stepper *s) {
     const plan *p = j->plan;
     nevh_sections *x = watch(j, s);
     nevh_energy *energy = plan_watch(p);
@@ -229,7 +229,7 @@ static int run_member(job *j, nevh_stepper *s) {
     return status;
 }
 
-static int run(job *j, nevh_stepper *s) {
+static int run(section_job *j, nevh_stepper *s) {
     int worst = members_tell(&j->members, j->plan);
     for (j->at = 0; j->at < j->members.count; j->at++)
         if (run_member(j, s))
@@ -238,7 +238,7 @@ static int run(job *j, nevh_stepper *s) {
 }
 
 /* The columns that sections show, each once; t is there before. */
-static void list_items(const job *j, list *items) {
+static void list_items(const section_job *j, list *items) {
     for (size_t i = 0; i < j->count; i++)
         for (size_t k = 0; k < j->all[i].decl->items; k++)
             if (strcmp(j->all[i].decl->item[k], "t") != 0 &&
@@ -254,7 +254,7 @@ static double number_of(const series *s, const double *point,
     return NAN;
 }
 
-static void fill(table *t, const job *j, const list *items) {
+static void fill(table *t, const section_job *j, const list *items) {
     for (size_t i = 0; i < j->count; i++, table_group(t)) {
         const series *s = &j->all[i];
         for (size_t k = 0; k < s->points; k++) {
@@ -282,7 +282,7 @@ static char *crossing_text(const nevh_scene_section *decl, double *at) {
 }
 
 /* Why there are no points; to be freed. */
-static char *reason(const job *j, const series *s) {
+static char *reason(const section_job *j, const series *s) {
     const nevh_scene_section *decl = s->decl;
     const char *unit =
         decl->left ? nevh_scene_label(j->plan->scene, decl->left) : "";
@@ -303,7 +303,7 @@ static char *reason(const job *j, const series *s) {
     return text;
 }
 
-static void note_points(const job *j, const series *s, list *notes) {
+static void note_points(const section_job *j, const series *s, list *notes) {
     bool part = isfinite(j->after);
     char *why = s->points || part ? NULL : reason(j, s);
     char *from =
@@ -314,7 +314,7 @@ static void note_points(const job *j, const series *s, list *notes) {
     free(why);
 }
 
-static void note(const job *j, const options *o, list *notes) {
+static void note(const section_job *j, const options *o, list *notes) {
     const plan *p = j->plan;
     plan_notes(p, notes);
     list_print(notes, "scene: %s", p->name);
@@ -329,7 +329,7 @@ static void note(const job *j, const options *o, list *notes) {
 }
 
 /* Prints the reasons for an empty plot; a run that failed has printed its own. */
-static int refuse_empty(const job *j) {
+static int refuse_empty(const section_job *j) {
     list reasons = {0};
     for (size_t i = 0; i < j->count; i++)
         note_points(j, &j->all[i], &reasons);
@@ -339,14 +339,14 @@ static int refuse_empty(const job *j) {
     return TOOL_USAGE;
 }
 
-static size_t count_points(const job *j) {
+static size_t count_points(const section_job *j) {
     size_t count = 0;
     for (size_t i = 0; i < j->count; i++)
         count += j->all[i].points;
     return count;
 }
 
-static void add_note(const job *j, plot *to) {
+static void add_note(const section_job *j, plot *to) {
     char *scheme = plot_scheme(j->plan, j->integrator);
     char *energy = j->members.several
                        ? text_print("%zu orbits", j->members.count)
@@ -363,7 +363,7 @@ static void add_note(const job *j, plot *to) {
     free(more);
 }
 
-static int draw(const job *j, const options *o, int status) {
+static int draw(const section_job *j, const options *o, int status) {
     plot *to = NULL;
     if (count_points(j) == 0)
         return status ? status : refuse_empty(j);
@@ -375,7 +375,7 @@ static int draw(const job *j, const options *o, int status) {
     int drawn = plot_write(to, o);
     plot_free(to);
     if (!drawn)
-        plot_say_written(o, j->plan, j->integrator, count_points(j));
+        plot_written_report(o, j->plan, j->integrator, count_points(j));
     return drawn ? drawn : status;
 }
 
@@ -387,7 +387,7 @@ static options with_format(const options *o) {
     return as;
 }
 
-static int print(const job *j, const options *o, int status) {
+static int print(const section_job *j, const options *o, int status) {
     page result = {.table = table_new()};
     options as = with_format(o);
     list items = {0};
@@ -410,7 +410,7 @@ static int print(const job *j, const options *o, int status) {
 
 /* Shows the rows and the picture. The picture is written first if a reader of the
    rows that stops early would end the program. */
-static int show(const job *j, const options *o, int status) {
+static int show(const section_job *j, const options *o, int status) {
     bool first = plot_goes_first(o);
     int drawn = first ? draw(j, o, status) : status;
     if (!plot_replaces_rows(o))
@@ -422,7 +422,7 @@ static int show(const job *j, const options *o, int status) {
 
 int section_panel(plot **to, const plan *p, const options *o,
                   const char *integrator) {
-    job j = {.stopped = NAN, .integrator = integrator};
+    section_job j = {.stopped = NAN, .integrator = integrator};
     nevh_stepper *s = plan_stepper(p, integrator);
     bool fits = !nevh_stepper_status(s);
     int status = fits ? choose(&j, p, o) : TOOL_OK;
@@ -440,7 +440,7 @@ int section_panel(plot **to, const plan *p, const options *o,
 
 static int section(const options *o) {
     plan p;
-    job j = {.stopped = NAN};
+    section_job j = {.stopped = NAN};
     nevh_stepper *s = NULL;
     options as = with_format(o);
     int status = plan_make(&p, o);

@@ -28,7 +28,7 @@ struct trajectory {
     const char *integrator;
     nevh_stepper *stepper;
     row_times rows;
-    sink to;
+    row_output to;
     bool own_time, stops, finished;
     run_state now; /* q, p: of the run under way */
     double *observed, *more;
@@ -58,7 +58,7 @@ static void reserve(trajectory *r) {
 
 trajectory *trajectory_new(const plan *p, const char *integrator,
                            nevh_stepper *stepper, const row_times *rows,
-                           sink to) {
+                           row_output to) {
     trajectory *r = tool_allocate(1, sizeof *r);
     *r = (trajectory){.plan = p,
                       .integrator = integrator,

@@ -87,12 +87,12 @@ typedef struct {
     const more_columns *more; /* NULL: none */
     bool quiet;               /* without remarks on the lines */
     bool mute;                /* failures are not printed */
-} sink;
+} row_output;
 typedef struct trajectory trajectory;
 /* integrator  as plan_scheme takes it
    stepper     of that integrator, and borrowed; plan and times, too */
 trajectory *trajectory_new(const plan *, const char *integrator, nevh_stepper *,
-                           const row_times *, sink);
+                           const row_times *, row_output);
 void trajectory_free(trajectory *);
 /* All columns' names. */
 void trajectory_header(trajectory *);

@@ -112,8 +112,8 @@ int plot_check(const options *);
    format was asked for. */
 bool plot_replaces_rows(const options *);
 /* Then, what was drawn, where that is in a file; points: 0 is not said. */
-void plot_say_written(const options *, const plan *, const char *integrator,
-                      size_t points);
+void plot_written_report(const options *, const plan *, const char *integrator,
+                         size_t points);
 /* True if the picture goes to a file, which is to be written before the rows are
    printed: a reader that stops early ends the program. */
 bool plot_goes_first(const options *);

@@ -81,8 +81,8 @@ bool plot_replaces_rows(const options *o) {
            !option_given(o, "format");
 }
 
-void plot_say_written(const options *o, const plan *p, const char *integrator,
-                      size_t points) {
+void plot_written_report(const options *o, const plan *p,
+                         const char *integrator, size_t points) {
     if (o->quiet || !plot_replaces_rows(o) || !plot_goes_first(o))
         return;
     char *scheme = plot_scheme(p, integrator);

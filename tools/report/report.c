@@ -1,7 +1,7 @@
 /* nevh report: what the other commands say of a scene, as one page of HTML.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
-#include "film_private.h"
+#include "animation_private.h"
 #include "report_private.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -12,10 +12,10 @@
 typedef struct {
     const options *given;
     char *folder, *rows, *picture, *narrow, *messages; /* files of one part */
-    size_t films;                                      /* on the page */
+    size_t animations;                                 /* on the page */
     size_t parts;                                      /* so far */
     int terminal; /* stderr, where messages of a part go to a file; else -1 */
-} report_work;
+} report_job;
 
 typedef struct {
     const char *title, *about, *arguments;
@@ -94,7 +94,11 @@ static const kind_of_part kinds[] = {
     {"Properties of H", "Tested numerically at states around the start.",
      "check", &check_command, always, PLOT_USUAL, true, false, 0},
 };
-enum { KINDS = sizeof kinds / sizeof *kinds, STARTS = 2, FILM_BYTES = 100000 };
+enum {
+    KINDS = sizeof kinds / sizeof *kinds,
+    STARTS = 2,
+    ANIMATION_BYTES = 100000
+};
 
 char *text_read(const char *name) {
     FILE *f = fopen(name, "rb");
@@ -130,7 +134,7 @@ static char *add_list(char *line, const char *option, const list *items) {
 }
 
 /* With the options that the report was given. */
-static char *command_of(const report_work *w, const char *scene,
+static char *command_of(const report_job *w, const char *scene,
                         const char *arguments) {
     const options *o = w->given;
     size_t word = strcspn(arguments, " ");
@@ -146,7 +150,7 @@ static char *command_of(const report_work *w, const char *scene,
 }
 
 /* Runs a command with stderr in a file; -1 where that cannot be. */
-static int run_heard(report_work *w, const command *c, const options *o) {
+static int run_heard(report_job *w, const command *c, const options *o) {
     int kept = dup(STDERR_FILENO), status = -1;
     FILE *heard = fopen(w->messages, "w");
     fflush(stderr);
@@ -164,7 +168,7 @@ static int run_heard(report_work *w, const command *c, const options *o) {
     return status;
 }
 
-static report_part make_part(report_work *w, const kind_of_part *kind,
+static report_part make_part(report_job *w, const kind_of_part *kind,
                              char *scene) {
     char *words[] = {"report", scene};
     options o = *w->given;
@@ -191,15 +195,15 @@ static report_part make_part(report_work *w, const kind_of_part *kind,
 }
 
 /* The command whose rows have the errors that the picture moves by. */
-static char *film_command(const report_work *w, const film *f,
-                          const char *scene) {
+static char *animation_command(const report_job *w, const animation *f,
+                               const char *scene) {
     options o = *w->given;
-    report_work as = {.given = &o};
+    report_job as = {.given = &o};
     double end = f->plan->run->t_start + (double)f->most * f->dt;
     char *dt = text_print("%.3g", f->dt), *t_end = text_print("%.15g", end);
     o.integrators = o.dt = (list){0};
-    list_add(&o.integrators, f->reel[0].integrator);
-    list_add(&o.integrators, f->reel[1].integrator);
+    list_add(&o.integrators, f->recording[0].integrator);
+    list_add(&o.integrators, f->recording[1].integrator);
     list_add(&o.dt, dt);
     o.t_end = t_end;
     char *text = command_of(&as, scene, "compare");
@@ -211,24 +215,25 @@ static char *film_command(const report_work *w, const film *f,
 }
 
 /* Without HTML where there is none. */
-static report_part make_film(const report_work *w, const kind_of_part *kind,
-                             char *scene) {
+static report_part make_animation(const report_job *w, const kind_of_part *kind,
+                                  char *scene) {
     char *words[] = {"report", scene};
     options o = *w->given;
     report_part part = {.title = kind->title, .about = kind->about};
     size_t size;
     plan p = {0};
-    film f = {0};
+    animation f = {0};
     o.operands = (list){words, 2};
-    if (!plan_make(&p, &o) && film_make(&f, &p, FILM_BYTES / w->films)) {
+    if (!plan_make(&p, &o) &&
+        animation_make(&f, &p, ANIMATION_BYTES / w->animations)) {
         FILE *to = tool_owned(open_memstream(&part.html, &size));
-        film_html(&f, to);
+        animation_html(&f, to);
         fclose(to);
         tool_owned(part.html);
-        part.command = film_command(w, &f, scene);
+        part.command = animation_command(w, &f, scene);
         part.by = "The same runs:";
     }
-    film_free(&f);
+    animation_free(&f);
     plan_free(&p);
     return part;
 }
@@ -262,24 +267,24 @@ static int refuse(const char *scene, const report_part *part) {
 }
 
 /* Not where the part has nothing to show. */
-static int add_part(report_work *w, const kind_of_part *kind, char *name,
+static int add_part(report_job *w, const kind_of_part *kind, char *name,
                     variant *v, FILE *f) {
     int status = TOOL_OK;
     w->given = &v->given;
     report_part part =
-        kind->of ? make_part(w, kind, name) : make_film(w, kind, name);
+        kind->of ? make_part(w, kind, name) : make_animation(w, kind, name);
     part.variant = v->name;
     if (kind->of == &compare_command &&
         (part.status == TOOL_USAGE || !has_verdict(&part)))
         status = refuse(name, &part);
     else if (part.command)
-        html_part(f, &part, ++w->parts, &v->told);
+        html_part(f, &part, ++w->parts, &v->earlier);
     free_part(&part);
     return status;
 }
 
 /* Variants side by side. */
-static int add_kind(report_work *w, const kind_of_part *kind, char *name,
+static int add_kind(report_job *w, const kind_of_part *kind, char *name,
                     const variants *all, FILE *f) {
     int status = TOOL_OK;
     size_t wanted = 0;
@@ -295,7 +300,7 @@ static int add_kind(report_work *w, const kind_of_part *kind, char *name,
     return status;
 }
 
-static int add_scene(report_work *w, const options *o, char *name, FILE *f) {
+static int add_scene(report_job *w, const options *o, char *name, FILE *f) {
     variants all;
     int status = variants_open(&all, o, name);
     if (!status) {
@@ -313,7 +318,7 @@ static int add_scene(report_work *w, const options *o, char *name, FILE *f) {
     return status;
 }
 
-static void remove_folder(const report_work *w) {
+static void remove_folder(const report_job *w) {
     const char *const files[] = {w->rows, w->picture, w->narrow, w->messages};
     for (size_t i = 0; i < sizeof files / sizeof *files; i++)
         if (files[i])
@@ -322,7 +327,7 @@ static void remove_folder(const report_work *w) {
 }
 
 /* Copies the messages of a part to the terminal when it ends the program. */
-static void tell(const report_work *w) {
+static void copy_messages(const report_job *w) {
     char text[512];
     int file = w->terminal < 0 ? -1 : open(w->messages, O_RDONLY);
     for (ssize_t bytes = 0; file >= 0 && bytes >= 0;) {
@@ -335,15 +340,15 @@ static void tell(const report_work *w) {
 }
 
 /* The report that is being made. */
-static const report_work *volatile unfinished;
+static const report_job *volatile unfinished;
 
 static void leave(int number) {
     if (!number)
-        tell(unfinished);
+        copy_messages(unfinished);
     remove_folder(unfinished);
 }
 
-static int make_folder(report_work *w) {
+static int make_folder(report_job *w) {
     const char *parent = getenv("TMPDIR");
     w->folder =
         text_print("%s/nevh.XXXXXX", parent && *parent ? parent : "/tmp");
@@ -360,7 +365,7 @@ static int make_folder(report_work *w) {
     return TOOL_OK;
 }
 
-static void free_work(report_work *w) {
+static void free_work(report_job *w) {
     output_leave(NULL);
     if (w->messages)
         remove_folder(w);
@@ -393,7 +398,7 @@ static void begin_page(const options *o, FILE *f) {
 }
 
 static int report(const options *o) {
-    report_work w = {.given = o, .terminal = -1};
+    report_job w = {.given = o, .terminal = -1};
     char *text = NULL;
     size_t size;
     if (o->operands.count < 2)
@@ -408,7 +413,7 @@ static int report(const options *o) {
     FILE *f = tool_owned(open_memstream(&text, &size));
     int status = TOOL_OK;
     begin_page(o, f);
-    w.films =
+    w.animations =
         (o->operands.count - 1) * (o->variants.count ? o->variants.count : 1);
     for (size_t i = 1; !status && i < o->operands.count; i++)
         status = add_scene(&w, o, o->operands.item[i], f);

@@ -95,18 +95,18 @@ static void put_picture(FILE *f, const report_part *p, size_t number) {
 }
 
 /* Each line of notes once: most commands begin with the same ones. */
-static void put_notes_once(FILE *f, char *html, list *told) {
+static void put_notes_once(FILE *f, char *html, list *earlier) {
     for (char *line = strtok(html, "\n"); line; line = strtok(NULL, "\n")) {
         bool note = strncmp(line, "<p>", 3) == 0;
-        if (note && list_has(told, line))
+        if (note && list_has(earlier, line))
             continue;
         if (note)
-            list_add(told, line);
+            list_add(earlier, line);
         fprintf(f, "%s\n", line);
     }
 }
 
-void html_part(FILE *f, const report_part *p, size_t number, list *told) {
+void html_part(FILE *f, const report_part *p, size_t number, list *earlier) {
     fputs("<section>\n", f);
     put_heading(f, p->title, p->variant);
     fputs("<p>", f);
@@ -115,7 +115,7 @@ void html_part(FILE *f, const report_part *p, size_t number, list *told) {
     if (p->picture)
         put_picture(f, p, number);
     if (p->html)
-        put_notes_once(f, p->html, told);
+        put_notes_once(f, p->html, earlier);
     if (p->messages && *p->messages) {
         fputs("<pre tabindex=\"0\">", f);
         for (char *line = strtok(p->messages, "\n"); line;

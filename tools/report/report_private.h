@@ -21,7 +21,7 @@ typedef struct {
     const char *name; /* its settings; NULL: none */
     options given;
     nevh_scene *scene;
-    list told; /* notes that its parts have so far */
+    list earlier; /* notes of its parts so far */
 } variant;
 typedef struct {
     size_t count;
@@ -40,9 +40,9 @@ char *text_read(const char *name);
 void html_head(FILE *, const char *title, bool wide);
 /* Begins or ends a group of `count` parts side by side; nothing for one. */
 void html_side_by_side(FILE *, size_t count, bool begins);
-/* number  of its picture in the page
-   told    notes that parts before it have, and then its own */
-void html_part(FILE *, const report_part *, size_t number, list *told);
+/* number   of its picture in the page
+   earlier  in, out: notes of the parts before it, and then its own */
+void html_part(FILE *, const report_part *, size_t number, list *earlier);
 /* Title and source. */
 void html_title(FILE *, const nevh_scene *, const char *title);
 /* The lines that say what H is.  name: of the variant; NULL: there is one. */

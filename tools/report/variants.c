@@ -31,7 +31,7 @@ int variants_open(variants *all, const options *o, const char *scene) {
 void variants_close(variants *all) {
     for (size_t i = 0; i < all->count; i++) {
         list_free(&all->item[i].given.settings);
-        list_free(&all->item[i].told);
+        list_free(&all->item[i].earlier);
         nevh_scene_free(all->item[i].scene);
     }
     free(all->item);

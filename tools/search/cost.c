@@ -120,11 +120,11 @@ static size_t find_cells(costs *c,
     return count;
 }
 
-static void settle_cells(costs *c, const cell cells[], size_t count) {
+static void choose_native(costs *c, const cell cells[], size_t count) {
     row **all = tool_allocate(count, sizeof *all);
     for (size_t i = 0; i < count; i++)
         all[i] = &cells[i].study->level[cells[i].level];
-    rows_settle(&c->search.plan, all, count, true);
+    rows_choose_native(&c->search.plan, all, count, true);
     free(all);
 }
 
@@ -133,7 +133,7 @@ static void settle_cells(costs *c, const cell cells[], size_t count) {
 static void time_cells(costs *c) {
     cell *cells = tool_allocate(COST_TARGETS * c->count, sizeof *cells);
     size_t count = find_cells(c, is_compared, cells);
-    settle_cells(c, cells, count);
+    choose_native(c, cells, count);
     for (size_t i = 0; i < count; i++)
         study_time(&c->search, cells[i].study, cells[i].level);
     count = find_cells(c, is_shown, cells);
@@ -148,8 +148,8 @@ static void time_others(costs *c, bool shown) {
     for (size_t i = 0; i < c->count; i++)
         for (size_t k = 0; k < c->study[i].count; k++) {
             row *r = &c->study[i].level[k];
-            if (shown &&
-                (!cost_shows(c, &c->study[i]) || search_is_late(&c->search)))
+            if (shown && (!cost_shows(c, &c->study[i]) ||
+                          search_out_of_time(&c->search)))
                 continue;
             study_time(&c->search, &c->study[i], k);
             if (!shown && r->ran)

@@ -77,7 +77,7 @@ static const char *remark(const study *l, double time, double theory) {
     return "";
 }
 
-static void tell_digit(const costs *c, const study *l, list *words) {
+static void digit_words(const costs *c, const study *l, list *words) {
     slope s = slope_new(l, c->search.by_state);
     double time = grid_digit_factor(s.error, s.seconds, s.count);
     double evaluations = grid_digit_factor(s.error, s.evaluations, s.count);
@@ -91,11 +91,11 @@ static void tell_digit(const costs *c, const study *l, list *words) {
     slope_free(&s);
 }
 
-static void tell_digits(const costs *c, list *words) {
+static void digits_words(const costs *c, list *words) {
     list lines = {0};
     for (size_t i = 0; i < c->count; i++)
         if (cost_shows(c, &c->study[i]) && c->study[i].count)
-            tell_digit(c, &c->study[i], &lines);
+            digit_words(c, &c->study[i], &lines);
     if (lines.count)
         list_add(words, " one more digit         time     evaluations    "
                         "steps    10^(1/order)");
@@ -123,7 +123,7 @@ static char *step_text(const row *r) {
                             : text_print("dt = %.4g", r->dt);
 }
 
-static void tell_best(const costs *c, size_t first, size_t last, list *words) {
+static void best_words(const costs *c, size_t first, size_t last, list *words) {
     const study *best = costs_cheapest(c, cost_target[first]);
     const row *a = cell(c, best, first), *b = cell(c, best, last);
     char *digits =
@@ -148,7 +148,7 @@ static void tell_best(const costs *c, size_t first, size_t last, list *words) {
 }
 
 /* At the most digits that both reach. */
-static void tell_yardstick(const costs *c, const char *name, list *words) {
+static void yardstick_words(const costs *c, const char *name, list *words) {
     for (size_t k = COST_TARGETS; k-- > 0;)
         for (size_t i = 0; i < c->count && !cost_is_beyond(c, k); i++) {
             const study *l = &c->study[i];
@@ -167,18 +167,18 @@ static void tell_yardstick(const costs *c, const char *name, list *words) {
         }
 }
 
-static void tell_winners(const costs *c, list *words) {
+static void winner_words(const costs *c, list *words) {
     for (size_t k = 0; k < COST_TARGETS && !cost_is_beyond(c, k); k++) {
         size_t last = last_alike(c, k);
         if (costs_cheapest(c, cost_target[k]))
-            tell_best(c, k, last, words);
+            best_words(c, k, last, words);
         else
             list_print(words, "No integrator reaches %.0f digits.",
                        -log10(cost_target[k]));
         k = last;
     }
-    tell_yardstick(c, "verlet", words);
-    tell_yardstick(c, "rk4", words);
+    yardstick_words(c, "verlet", words);
+    yardstick_words(c, "rk4", words);
 }
 
 static char *names_where(const costs *c,
@@ -200,11 +200,11 @@ static bool drifts_here(const costs *c, const study *l) {
     return cost_shows(c, l) && cost_drifts(l);
 }
 
-static bool says_nothing(const costs *c, const study *l) {
+static bool conserves_energy(const costs *c, const study *l) {
     return l->end != STUDY_REFUSED && !costs_count(c, l);
 }
 
-static void tell_names(const costs *c, list *words, const char *format,
+static void name_words(const costs *c, list *words, const char *format,
                        bool (*holds)(const costs *, const study *)) {
     char *names = names_where(c, holds);
     char *text = text_print("%s: %s", names, format);
@@ -215,7 +215,7 @@ static void tell_names(const costs *c, list *words, const char *format,
 }
 
 /* The first of the table in full, the others by name. */
-static void tell_failures(const costs *c, list *words) {
+static void failure_words(const costs *c, list *words) {
     enum { FEW = 4 };
     list others = {0};
     const row *first = NULL;
@@ -241,7 +241,7 @@ static void tell_failures(const costs *c, list *words) {
     list_free(&others);
 }
 
-static void tell_hidden(const costs *c, list *words) {
+static void hidden_words(const costs *c, list *words) {
     size_t dear = 0, untried = 0;
     for (size_t i = 0; i < c->count; i++) {
         const study *l = &c->study[i];
@@ -307,7 +307,7 @@ static bool any_repeated(const costs *c) {
 }
 
 /* The digits whose columns are left out, from the first of them on. */
-static void tell_empty(const costs *c, list *words) {
+static void empty_words(const costs *c, list *words) {
     size_t k = 0;
     while (k < COST_TARGETS && !cost_is_empty(c, k))
         k++;
@@ -323,9 +323,9 @@ static void tell_empty(const costs *c, list *words) {
                    -log10(cost_target[k]));
 }
 
-static void tell_legend(const costs *c, list *words) {
+static void legend_words(const costs *c, list *words) {
     char *longest = cost_milliseconds(longest_cell(c));
-    tell_empty(c, words);
+    empty_words(c, words);
     if (any_repeated(c))
         list_add(words, "=: the same run as for the digits to its left, whose "
                         "step keeps these as well.");
@@ -351,24 +351,24 @@ static void tell_legend(const costs *c, list *words) {
 }
 
 void cost_words(costs *c, list *words) {
-    tell_digits(c, words);
+    digits_words(c, words);
     cost_price(c, words);
     list_add(words, " ");
-    tell_winners(c, words);
-    tell_names(
+    winner_words(c, words);
+    name_words(
         c, words,
         "the error grows with time: a longer run costs more for the same "
         "digits.",
         drifts_here);
-    tell_names(
+    name_words(
         c, words,
         "the energy is conserved exactly at any step, so that this table "
         "ranks nothing; use --by state.",
-        says_nothing);
+        conserves_energy);
     if (c->search.plan.friction && !c->search.by_state)
         list_add(words, "Friction around a step is exact in the balance, "
                         "though not in the orbit: compare --by state.");
-    tell_failures(c, words);
-    tell_hidden(c, words);
-    tell_legend(c, words);
+    failure_words(c, words);
+    hidden_words(c, words);
+    legend_words(c, words);
 }

@@ -55,7 +55,8 @@ typedef struct {
 } findings;
 
 /* With the step that it chooses, and with steps around it. */
-static void find_method(const context *c, findings *f, const char *gradient) {
+static void find_method(const gradients_job *c, findings *f,
+                        const char *gradient) {
     finding *g = &f->item[f->count++];
     *g = gradient_find(c, gradient, c->plan->gradient_step);
     g->first = true;
@@ -71,7 +72,7 @@ static bool is_wanted(const options *o, const char *gradient) {
     return o->gradients.count == 0 || list_has(&o->gradients, gradient);
 }
 
-static findings find_all(const context *c, const options *o) {
+static findings find_all(const gradients_job *c, const options *o) {
     size_t methods = 0;
     while (nevh_gradients()[methods])
         methods++;
@@ -104,7 +105,7 @@ static table *new_table(bool for_people) {
     return t;
 }
 
-static void tell(const context *c, page *result) {
+static void orbit_notes(const gradients_job *c, page *result) {
     list_print(&result->before,
                "orbit of %s at dt = %.4g, %zu steps, t = %g ... %g; errors of "
                "the gradient at %zu states, relative to its largest component",
@@ -138,10 +139,10 @@ static void tell(const context *c, page *result) {
 }
 
 static int gradients_plan(const options *o, const plan *p) {
-    context c = {0};
+    gradients_job c = {0};
     page result = {0};
     bool for_people = o->format == FORMAT_TABLE;
-    int status = plot_check(o) ? TOOL_USAGE : context_make(&c, p),
+    int status = plot_check(o) ? TOOL_USAGE : gradients_job_make(&c, p),
         drawn = TOOL_OK;
     bool first = plot_goes_first(o);
     if (!status && first)
@@ -152,14 +153,14 @@ static int gradients_plan(const options *o, const plan *p) {
         add_all(&result, &f, for_people);
         if (!o->quiet || !for_people) {
             plan_notes(p, &result.before);
-            tell(&c, &result);
+            orbit_notes(&c, &result);
         }
         status = output_page(o, &result, TOOL_OK);
         if (plot_wanted(o) && !first)
             drawn = gradients_plot(o, &c);
     }
     page_free(&result);
-    context_free(&c);
+    gradients_job_free(&c);
     return drawn ? TOOL_USAGE : status;
 }
 

@@ -39,13 +39,13 @@ static void states_free(orbit_states *o) {
     nevh_field_free(o->field);
 }
 
-static const nevh_integrator *scheme_of(const context *c) {
+static const nevh_integrator *scheme_of(const gradients_job *c) {
     bool transformed;
     return plan_scheme(c->plan, c->integrator, &transformed);
 }
 
-static nevh_options gradient_options(const context *c, const char *gradient,
-                                     double step) {
+static nevh_options gradient_options(const gradients_job *c,
+                                     const char *gradient, double step) {
     const plan *p = c->plan;
     nevh_options o = plan_options(p, gradient);
     o.gradient_step = step;
@@ -55,14 +55,14 @@ static nevh_options gradient_options(const context *c, const char *gradient,
     return o;
 }
 
-/* The orbit with that gradient, watched. */
-static int follow(const context *c, const char *gradient, double step,
+/* The orbit with that gradient, observed. */
+static int follow(const gradients_job *c, const char *gradient, double step,
                   const nevh_observer *observer) {
     enum { RUNS = 6 }; /* with other half-spreads */
     nevh_options o = gradient_options(c, gradient, step);
     o.steps_foreseen = RUNS * (double)c->steps;
     nevh_stepper *s = nevh_stepper_new(c->plan->system, scheme_of(c), &o);
-    plan_tell_native(s);
+    plan_native_report(s);
     size_t n = c->plan->n;
     double *q = tool_allocate(n, sizeof *q), *p = tool_allocate(n, sizeof *p);
     memcpy(q, c->plan->q, n * sizeof *q);
@@ -77,15 +77,15 @@ static int follow(const context *c, const char *gradient, double step,
     return status;
 }
 
-static int evaluate(const context *c, nevh_field *f, size_t i, double dq[],
-                    double dp[]) {
+static int evaluate(const gradients_job *c, nevh_field *f, size_t i,
+                    double dq[], double dp[]) {
     size_t n = c->exact.n;
     return nevh_field_gradient(f, 1, &c->exact.t[i], c->exact.q + i * n,
                                c->exact.p + i * n, dq, dp);
 }
 
 /* Exact gradients at all states. */
-static int evaluate_yardstick(context *c) {
+static int evaluate_yardstick(gradients_job *c) {
     size_t n = c->exact.n;
     nevh_options o = gradient_options(c, c->yardstick, 0);
     nevh_field *f = nevh_field_new(c->plan->system, &o);
@@ -102,7 +102,7 @@ static int evaluate_yardstick(context *c) {
 
 /* The largest at all states, relative; INFINITY where H fails, with a message
    of the field's. */
-static double largest_error(const context *c, nevh_field *f) {
+static double largest_error(const gradients_job *c, nevh_field *f) {
     size_t n = c->exact.n;
     double *dq = tool_allocate(n, sizeof *dq),
            *dp = tool_allocate(n, sizeof *dp), error = 0;
@@ -119,7 +119,7 @@ static double largest_error(const context *c, nevh_field *f) {
     return error / c->size;
 }
 
-static void errors_along(const context *c, nevh_field *f, finding *g) {
+static void errors_along(const gradients_job *c, nevh_field *f, finding *g) {
     nevh_counts before = nevh_field_counts(f);
     g->error = largest_error(c, f);
     g->good = !isinf(g->error);
@@ -127,7 +127,7 @@ static void errors_along(const context *c, nevh_field *f, finding *g) {
                      (double)c->exact.count;
 }
 
-double gradient_error(const context *c, const char *gradient,
+double gradient_error(const gradients_job *c, const char *gradient,
                       const double steps[]) {
     nevh_options o = gradient_options(c, gradient, 0);
     if (steps)
@@ -139,7 +139,7 @@ double gradient_error(const context *c, const char *gradient,
 }
 
 /* The median of a few rounds, each of which goes on along the orbit. */
-static double time_of(const context *c, nevh_field *f) {
+static double time_of(const gradients_job *c, nevh_field *f) {
     enum { ROUNDS_TIMED = 5, AT_ONCE = 16 };
     static const double enough = 2e-3; /* seconds a round */
     double seconds[ROUNDS_TIMED];
@@ -160,7 +160,7 @@ static double time_of(const context *c, nevh_field *f) {
 }
 
 /* The errors that planning expects of its differences, the worst of all variables. */
-static void take_estimates(const context *c, nevh_field *f, finding *g) {
+static void take_estimates(const gradients_job *c, nevh_field *f, finding *g) {
     for (size_t i = 0; i < nevh_field_step_count(f); i++) {
         nevh_step_report r = nevh_field_step_report(f, i);
         if (r.given)
@@ -215,7 +215,8 @@ static int observe_influx(void *data, size_t step, double t, const double q[],
     return status;
 }
 
-void gradients_influx(const context *c, finding findings[], size_t count) {
+void gradients_influx(const gradients_job *c, finding findings[],
+                      size_t count) {
     nevh_options o = gradient_options(c, c->yardstick, 0);
     size_t n = c->exact.n;
     inflow f = {.exact = nevh_field_new(c->plan->system, &o),
@@ -233,7 +234,7 @@ void gradients_influx(const context *c, finding findings[], size_t count) {
     free(f.gradient);
 }
 
-static double energy_along(const context *c, const finding *g) {
+static double energy_along(const gradients_job *c, const finding *g) {
     orbit_states o = states_new(c->plan, c->steps);
     double most = 0;
     int status =
@@ -245,7 +246,7 @@ static double energy_along(const context *c, const finding *g) {
 }
 
 /* The mean over some states: where the orbit rests nothing is noisy. */
-static double floor_along(const context *c, nevh_field *f) {
+static double floor_along(const gradients_job *c, nevh_field *f) {
     size_t n = c->exact.n, apart = c->exact.count / 16 + 1, count = 0;
     double sum = 0, one;
     for (size_t i = 0; i < c->exact.count; i += apart, count++) {
@@ -257,7 +258,8 @@ static double floor_along(const context *c, nevh_field *f) {
     return sqrt(sum / (double)count) / c->scale;
 }
 
-finding gradient_find(const context *c, const char *gradient, double step) {
+finding gradient_find(const gradients_job *c, const char *gradient,
+                      double step) {
     finding g = {
         .gradient = gradient, .step = step, .good = true, .floor = NAN};
     nevh_options o = gradient_options(c, gradient, step);
@@ -282,7 +284,7 @@ void finding_free(finding *g) {
 }
 
 /* The shortest of those that differences of full order have chosen. */
-double gradient_own_step(const context *c, const char *gradient) {
+double gradient_own_step(const gradients_job *c, const char *gradient) {
     nevh_options o = gradient_options(c, gradient, 0);
     nevh_field *f = nevh_field_new(c->plan->system, &o);
     double shortest = INFINITY;
@@ -305,7 +307,7 @@ static const char *find_yardstick(const plan *p) {
 }
 
 /* The work of a step with differences, from a pilot of a few steps. */
-static double step_work(const context *c) {
+static double step_work(const gradients_job *c) {
     enum { PILOT = 32 };
     nevh_options o = gradient_options(c, "central4", 0);
     nevh_stepper *s = nevh_stepper_new(c->plan->system, scheme_of(c), &o);
@@ -328,7 +330,7 @@ static double step_work(const context *c) {
 
 /* Up to the end of the run, or to where it stops, or as far as the runs of all
    gradients and steps come in about a second. */
-static void choose_steps(context *c) {
+static void choose_steps(gradients_job *c) {
     enum { RUNS = 40 };
     static const double most = 2e4, least = 256, budget = 1.2;
     const plan *p = c->plan;
@@ -342,7 +344,7 @@ static void choose_steps(context *c) {
         c->steps = s.step;
 }
 
-int context_make(context *c, const plan *p) {
+int gradients_job_make(gradients_job *c, const plan *p) {
     if (!plan_fits(p, &c->integrator))
         return TOOL_USAGE;
     c->plan = p;
@@ -361,7 +363,7 @@ int context_make(context *c, const plan *p) {
     return TOOL_FAILED;
 }
 
-void context_free(context *c) {
+void gradients_job_free(gradients_job *c) {
     states_free(&c->exact);
     free(c->dq);
     free(c->dp);

@@ -13,7 +13,7 @@
 enum { LEAST = -13, MOST = 1, EACH = 6 }; /* powers of 10, points a decade */
 
 typedef struct {
-    const context *context;
+    const gradients_job *gradients_job;
     plot *to;
     double *size;  /* of each variable along the orbit, 2n */
     double unit;   /* steps are multiples of it */
@@ -30,7 +30,7 @@ static double size_along(const orbit_states *o, const double values[],
 
 /* Finds the size of each variable; one that rests has that of its kind. */
 static void fill_sizes(drawing *d) {
-    const orbit_states *o = &d->context->exact;
+    const orbit_states *o = &d->gradients_job->exact;
     double most[2] = {0, 0}, low = INFINITY, high = 0;
     for (size_t k = 0; k < 2 * o->n; k++) {
         const double *values = k < o->n ? o->q : o->p;
@@ -49,11 +49,11 @@ static void fill_sizes(drawing *d) {
 
 /* The error of the gradient in all variables. */
 static double error_at(const drawing *d, const char *gradient, double x) {
-    size_t n = d->context->exact.n;
+    size_t n = d->gradients_job->exact.n;
     double *steps = tool_allocate(2 * n, sizeof *steps);
     for (size_t k = 0; k < 2 * n; k++)
         steps[k] = d->relative ? x * d->size[k] : x;
-    double error = gradient_error(d->context, gradient, steps);
+    double error = gradient_error(d->gradients_job, gradient, steps);
     free(steps);
     return error;
 }
@@ -102,8 +102,8 @@ static size_t draw_curve(const drawing *d, const char *gradient) {
 /* With the steps that nevh chooses, over the shortest of them. */
 static void draw_choice(const drawing *d, const char *gradient, size_t curve) {
     size_t series = plot_series(d->to, NULL);
-    double step = gradient_own_step(d->context, gradient);
-    double error = gradient_error(d->context, gradient, NULL);
+    double step = gradient_own_step(d->gradients_job, gradient);
+    double error = gradient_error(d->gradients_job, gradient, NULL);
     plot_style(d->to, series, PLOT_BOBS);
     plot_like(d->to, series, curve);
     plot_size(d->to, series, 0.5);
@@ -115,7 +115,7 @@ static void draw_choice(const drawing *d, const char *gradient, size_t curve) {
    far below rounding. */
 static void draw_level(const drawing *d, const char *gradient) {
     static const double least = 1e-17;
-    double error = gradient_error(d->context, gradient, NULL);
+    double error = gradient_error(d->gradients_job, gradient, NULL);
     char *name = error < least ? text_print("%s: below %g", gradient, least)
                                : text_print("%s", gradient);
     size_t series = plot_series(d->to, name);
@@ -131,8 +131,8 @@ static void draw_all(const drawing *d, const options *o) {
     for (size_t i = 0; nevh_gradients()[i]; i++) {
         const char *name = nevh_gradient_name(nevh_gradients()[i]);
         bool wanted = o->gradients.count == 0 || list_has(&o->gradients, name);
-        bool yardstick = strcmp(name, d->context->yardstick) == 0;
-        if (!wanted || !gradient_fits(d->context->plan, name, NULL))
+        bool yardstick = strcmp(name, d->gradients_job->yardstick) == 0;
+        if (!wanted || !gradient_fits(d->gradients_job->plan, name, NULL))
             continue;
         if (strncmp(name, "central", 7) == 0)
             draw_choice(d, name, draw_curve(d, name));
@@ -142,7 +142,7 @@ static void draw_all(const drawing *d, const options *o) {
 }
 
 static char *words(const drawing *d) {
-    const context *c = d->context;
+    const gradients_job *c = d->gradients_job;
     const char *unit = nevh_scene_label(c->plan->scene, "t");
     return text_print("at %zu states of an orbit by %s, dt = %.4g%s%s; against "
                       "the %s gradient, relative to its largest component%s",
@@ -154,7 +154,7 @@ static char *words(const drawing *d) {
                             "nevh chooses, over the shortest");
 }
 
-int gradients_plot(const options *o, const context *c) {
+int gradients_plot(const options *o, const gradients_job *c) {
     const plan *p = c->plan;
     drawing d = {c, NULL, tool_allocate(2 * p->n, sizeof(double)), 1, false};
     fill_sizes(&d);

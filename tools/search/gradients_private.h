@@ -22,13 +22,13 @@ typedef struct {
     const char *yardstick;
     double *dq, *dp; /* its gradients, n a state */
     double size;     /* largest component among them */
-} context;
+} gradients_job;
 
 /* Runs the orbit with the most exact gradient that there is.
-   context  out, of zeros; to be freed in any case; borrows the plan
+   job      out, of zeros; to be freed in any case; borrows the plan
    returns  TOOL_OK; TOOL_FAILED or TOOL_USAGE with the message printed */
-int context_make(context *, const plan *);
-void context_free(context *);
+int gradients_job_make(gradients_job *, const plan *);
+void gradients_job_free(gradients_job *);
 
 typedef struct {
     const char *gradient;
@@ -43,20 +43,20 @@ typedef struct {
 
 /* All but the influx.
    step  0: chosen */
-finding gradient_find(const context *, const char *gradient, double step);
+finding gradient_find(const gradients_job *, const char *gradient, double step);
 /* The influx of all, along one orbit. */
-void gradients_influx(const context *, finding[], size_t count);
+void gradients_influx(const gradients_job *, finding[], size_t count);
 void finding_free(finding *);
 /* The shortest half-spread chosen by differences of full order; INFINITY. */
-double gradient_own_step(const context *, const char *gradient);
+double gradient_own_step(const gradients_job *, const char *gradient);
 
 /* The largest error at the states, relative to the largest component.
    steps    half-spreads of all variables, 2n; NULL: chosen
    returns  INFINITY where the gradient fails */
-double gradient_error(const context *, const char *gradient,
+double gradient_error(const gradients_job *, const char *gradient,
                       const double steps[]);
 
 /* gradients_plot.c: as plot_write. */
-int gradients_plot(const options *, const context *);
+int gradients_plot(const options *, const gradients_job *);
 
 #endif

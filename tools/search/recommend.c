@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* The length of the whole run over that of the pilot. */
-static double stretch(const advice *a) {
+static double stretch(const recommendation *a) {
     double start = a->search.plan.run->t_start;
     return (a->whole - start) / (a->pilot - start);
 }
@@ -24,15 +24,15 @@ static int places_short(const row *r, double over) {
 }
 
 /* As much as the whole should take by what the pilot took, and some more. */
-static double patience_for(const advice *a, const row *pilot) {
+static double work_limit_for(const recommendation *a, const row *pilot) {
     static const double more = 4;
-    return fmax(more * pilot->work * stretch(a), a->search.plan.patience);
+    return fmax(more * pilot->work * stretch(a), a->search.plan.work_limit);
 }
 
 /* The place of the pilot's choice, finer if the energy drifts, as its error grows
    with the length. */
-static int first_place(const advice *a, const study *l) {
-    const row *r = advice_keeps(a, l);
+static int first_place(const recommendation *a, const study *l) {
+    const row *r = recommend_keeps(a, l);
     double over = study_error(r, a->search.by_state) / a->target * stretch(a);
     int k = l->k[r - l->level];
     return row_drifts(r) && over > 1 ? k + places_short(r, over) : k;
@@ -45,19 +45,19 @@ static bool was_polished(const study *l, size_t level) {
 
 /* The pilot's choice on the whole run, with shorter steps where that is not
    enough. */
-static study verified(advice *a, const study *l) {
+static study verified(recommendation *a, const study *l) {
     enum { TRIES = 6 };
     study full = study_like(l, l->gradient);
     int k = first_place(a, l);
-    if (k == l->k[advice_keeps(a, l) - l->level] &&
-        was_polished(l, (size_t)(advice_keeps(a, l) - l->level)))
+    if (k == l->k[recommend_keeps(a, l) - l->level] &&
+        was_polished(l, (size_t)(recommend_keeps(a, l) - l->level)))
         full.topped = 1; /* longer steps failed sooner */
-    a->search.plan.patience = patience_for(a, advice_keeps(a, l));
+    a->search.plan.work_limit = work_limit_for(a, recommend_keeps(a, l));
     for (int i = 0; i < TRIES && !(i && search_is_over(&a->search, 1)); i++) {
         size_t level = study_run(&a->search, &full, k);
         const row *r = &full.level[level];
         double over = study_error(r, a->search.by_state) / a->target;
-        if (over <= 1 || r->late)
+        if (over <= 1 || r->over_limit)
             break;
         k += places_short(r, over) + i;
     }
@@ -69,8 +69,8 @@ static study verified(advice *a, const study *l) {
 
 /* The next of the pilots that keep the target, the cheapest first: those with
    the gradient that all schemes were tried with, then others. */
-static size_t list_next(const advice *a, bool taken[],
-                        const study *found[ADVICE_MOST]) {
+static size_t list_next(const recommendation *a, bool taken[],
+                        const study *found[RECOMMEND_MOST]) {
     size_t count = 0;
     bool *skipped = tool_allocate(a->count, sizeof *skipped);
     for (int others = 0; others < 2 && count == 0; others++) {
@@ -78,7 +78,7 @@ static size_t list_next(const advice *a, bool taken[],
             skipped[i] = taken[i] || (!others && a->study[i].gradient !=
                                                      a->gradients.item[0]);
         for (study *l;
-             count < ADVICE_MOST && (l = advice_next_best(a, skipped));) {
+             count < RECOMMEND_MOST && (l = recommend_next_best(a, skipped));) {
             skipped[l - a->study] = taken[l - a->study] = true;
             found[count++] = l;
         }
@@ -89,31 +89,33 @@ static size_t list_next(const advice *a, bool taken[],
 
 /* The pilot of the same integrator with the gradient that all were tried with;
    NULL: there is none that keeps the target. */
-static const study *usual_gradient(const advice *a, const study *l) {
+static const study *usual_gradient(const recommendation *a, const study *l) {
     for (size_t i = 0; i < a->count; i++)
         if (strcmp(a->study[i].integrator, l->integrator) == 0 &&
             a->study[i].gradient == a->gradients.item[0] &&
-            advice_keeps(a, &a->study[i]))
+            recommend_keeps(a, &a->study[i]))
             return &a->study[i];
     return NULL;
 }
 
 /* True if the errors of a gradient may pass the target in the whole run, when they
    grow with its length. */
-static bool adds_up(const advice *a, const study *l, const study *usual) {
+static bool adds_up(const recommendation *a, const study *l,
+                    const study *usual) {
     double least = INFINITY;
-    int k = l->k[advice_keeps(a, l) - l->level];
+    int k = l->k[recommend_keeps(a, l) - l->level];
     for (size_t i = 0; i < usual->count; i++)
         if (usual->k[i] <= k)
             least = study_error(&usual->level[i], false);
-    double own = study_error(advice_keeps(a, l), false) - least;
+    double own = study_error(recommend_keeps(a, l), false) - least;
     return least + stretch(a) * fabs(own) > a->target;
 }
 
 /* The answers of the pilot; where errors of a gradient may add up, the usual
    gradient instead. */
-static size_t list_pilots(const advice *a, const study *found[ADVICE_MOST]) {
-    size_t listed = advice_list(a, found), count = 0;
+static size_t list_pilots(const recommendation *a,
+                          const study *found[RECOMMEND_MOST]) {
+    size_t listed = recommend_list(a, found), count = 0;
     for (size_t i = 0; i < listed; i++) {
         const study *l = found[i], *usual = usual_gradient(a, l);
         bool known = false;
@@ -129,8 +131,8 @@ static size_t list_pilots(const advice *a, const study *found[ADVICE_MOST]) {
 
 /* The answers of the pilot, and where none of them keeps the target over the
    whole run, as the gradient's own errors may add up in it, what is next. */
-static void verify_pilots(advice *a) {
-    const study *pilots[ADVICE_MOST];
+static void verify_pilots(recommendation *a) {
+    const study *pilots[RECOMMEND_MOST];
     size_t count = list_pilots(a, pilots), done = 0;
     study *full = tool_allocate(a->count + 1, sizeof *full);
     bool *taken = tool_allocate(a->count, sizeof *taken), kept = false;
@@ -139,7 +141,7 @@ static void verify_pilots(advice *a) {
     while (count) {
         for (size_t i = 0; i < count; i++, done++) {
             full[done] = verified(a, pilots[i]);
-            kept |= advice_keeps(a, &full[done]) != NULL;
+            kept |= recommend_keeps(a, &full[done]) != NULL;
         }
         count = kept || search_is_over(&a->search, 1)
                     ? 0
@@ -153,7 +155,7 @@ static void verify_pilots(advice *a) {
 }
 
 /* A reference for the whole is a plan's own. */
-static void verify(advice *a, plan *p) {
+static void verify(recommendation *a, plan *p) {
     p->t_end = a->search.plan.t_end = a->whole;
     if (p->reference) {
         nevh_reference_free(p->reference);
@@ -168,26 +170,26 @@ static void verify(advice *a, plan *p) {
     }
     a->search.budget = a->search.spent + 2 * SEARCH_BUDGET;
     verify_pilots(a);
-    advice_time_once(a);
-    advice_time_best(a);
-    advice_choose(a);
+    recommend_time_once(a);
+    recommend_time_best(a);
+    recommend_choose(a);
 }
 
 /* Verdicts that the runs of answers leave open, from longer ones; what is
    without drift follows from them. */
-static void decide(advice *a) {
+static void decide(recommendation *a) {
     enum { ROUNDS_AT_MOST = 2 };
     a->search.plan.follow = 2;
     for (int i = 0; i < ROUNDS_AT_MOST; i++) {
-        const study *found[ADVICE_MOST];
-        size_t count = advice_list(a, found);
+        const study *found[RECOMMEND_MOST];
+        size_t count = recommend_list(a, found);
         for (size_t k = 0; k < count; k++) {
-            const row *r = advice_keeps(a, found[k]);
+            const row *r = recommend_keeps(a, found[k]);
             if (!(r->followed > 0))
                 row_follow(&a->search.plan,
                            &found[k]->level[r - found[k]->level]);
         }
-        advice_choose(a);
+        recommend_choose(a);
     }
 }
 
@@ -195,27 +197,27 @@ static int advise(const options *o, plan *p, double whole) {
     output out;
     if (output_open(&out, o->file))
         return TOOL_USAGE;
-    advice a = {.search = search_begin(p, o, SEARCH_BUDGET),
-                .pilot = p->t_end,
-                .whole = whole,
-                .target =
-                    fmax(fmax(o->search.state_error, o->search.energy_error),
-                         o->search.error),
-                .named = o->integrators.count > 0};
+    recommendation a = {
+        .search = search_begin(p, o, SEARCH_BUDGET),
+        .pilot = p->t_end,
+        .whole = whole,
+        .target = fmax(fmax(o->search.state_error, o->search.energy_error),
+                       o->search.error),
+        .named = o->integrators.count > 0};
     a.search.by_state = o->search.state_error > 0 || o->observable;
     a.search.keeping = a.named;
-    advice_take_gradients(&a, o);
-    advice_search(&a);
+    recommend_take_gradients(&a, o);
+    recommend_search(&a);
     if (a.best && whole > p->t_end)
         verify(&a, p);
     if (a.best) {
         decide(&a);
-        advice_follow(&a, p);
+        recommend_follow(&a, p);
     }
-    int status = a.best ? TOOL_OK : advice_none(&a);
+    int status = a.best ? TOOL_OK : recommend_none(&a);
     search_end(&a.search);
     if (a.best)
-        advice_print(&a, o, out.stream);
+        recommend_print(&a, o, out.stream);
     for (size_t i = 0; i < a.count; i++)
         study_free(&a.study[i]);
     free(a.study);

@@ -16,40 +16,41 @@ typedef struct {
     study *best, *second;  /* with another integrator; NULL: none */
     study *alone, *steady; /* from values of H; without drift */
     double period;         /* the shortest that the orbit has; NAN: unknown */
-    double longer;         /* the end to which promises were followed */
-    char *not_longer;      /* why they were not; NULL */
-} advice;
+    double longer;         /* the end of the longer runs */
+    char *not_longer;      /* why there are none; NULL */
+} recommendation;
 
 /* recommend_search.c */
-void advice_take_gradients(advice *, const options *);
+void recommend_take_gradients(recommendation *, const options *);
 /* Follows studies to ever finer levels, until the cheapest that keep the target
    are known and timed. */
-void advice_search(advice *);
+void recommend_search(recommendation *);
 /* The cheapest level of a study that keeps the target, if it counts; NULL:
    none does. */
-const row *advice_keeps(const advice *, const study *);
+const row *recommend_keeps(const recommendation *, const study *);
 /* The study that took least time, of those that keep the target, were timed and
    are not taken; NULL: there is none. */
-study *advice_next_best(const advice *, const bool taken[]);
+study *recommend_next_best(const recommendation *, const bool taken[]);
 /* Times what may be an answer once; the best ones again. */
-void advice_time_once(advice *);
-void advice_time_best(advice *);
+void recommend_time_once(recommendation *);
+void recommend_time_best(recommendation *);
 /* Which studies the answers are. */
-void advice_choose(advice *);
+void recommend_choose(recommendation *);
 
-/* promise.c: the answers on the whole run, against a reference, and for how
+/* recommend_longer.c: the answers on the whole run, against a reference, and for how
    long they keep the target in one three times as long. */
-void advice_follow(advice *, plan *);
+void recommend_follow(recommendation *, plan *);
 /* The time until which an answer keeps the target; INFINITY: to the end of the
    longer run; NAN: unknown. */
-double advice_holds(const row *);
+double recommend_holds(const row *);
 
-/* advice.c */
-enum { ADVICE_MOST = 4 };
+/* recommend_words.c */
+enum { RECOMMEND_MOST = 4 };
 /* The answers, each once, the best first; returns their number. */
-size_t advice_list(const advice *, const study *found[ADVICE_MOST]);
-void advice_print(const advice *, const options *, FILE *);
+size_t recommend_list(const recommendation *,
+                      const study *found[RECOMMEND_MOST]);
+void recommend_print(const recommendation *, const options *, FILE *);
 /* Says why nothing keeps the target; TOOL_FAILED. */
-int advice_none(const advice *);
+int recommend_none(const recommendation *);
 
 #endif

@@ -5,19 +5,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool counts(const advice *a, const study *l) {
+static bool counts(const recommendation *a, const study *l) {
     return a->named || a->search.by_state || !study_keeps_energy(l);
 }
 
 /* The cheapest level that keeps the target, of the studies that count. */
-const row *advice_keeps(const advice *a, const study *l) {
+const row *recommend_keeps(const recommendation *a, const study *l) {
     return counts(a, l) ? study_cheapest(l, a->target, a->search.by_state)
                         : NULL;
 }
 
 /* The least work of the studies that take gradients: Taylor series that are far
    ahead do not end the search for the best of the others. */
-static double least_work(const advice *a) {
+static double least_work(const recommendation *a) {
     double least = INFINITY;
     for (size_t i = 0; i < a->count; i++) {
         const study *l = &a->study[i];
@@ -32,31 +32,31 @@ static double least_work(const advice *a) {
 static const double nearly = 2.5;
 
 /* A shorter step costs more, but for the sweeps that it saves. */
-static bool is_hopeless(const advice *a, const study *l) {
+static bool is_hopeless(const recommendation *a, const study *l) {
     return l->level[l->count - 1].work > nearly * least_work(a);
 }
 
-static void descend(advice *a) {
+static void descend(recommendation *a) {
     static const double share = 0.6;
     study *next;
     for (size_t i = 0; i < a->count; i++)
         study_begin(&a->search, &a->study[i]);
     while ((next = study_next(a->study, a->count)) &&
            !search_is_over(&a->search, share))
-        if (advice_keeps(a, next) || is_hopeless(a, next))
+        if (recommend_keeps(a, next) || is_hopeless(a, next))
             next->end = STUDY_LIMIT;
         else
             study_descend(&a->search, next);
 }
 
-static void refine(advice *a) {
+static void refine(recommendation *a) {
     for (size_t i = 0; i < a->count; i++) {
         study *l = &a->study[i];
         size_t k = 0;
         while (k < l->count &&
                study_error(&l->level[k], a->search.by_state) > a->target)
             k++;
-        if (advice_keeps(a, l) &&
+        if (recommend_keeps(a, l) &&
             (k == 0 || l->level[k - 1].work < nearly * least_work(a)))
             study_refine(&a->search, l, a->target, GRID_COARSE);
     }
@@ -64,14 +64,15 @@ static void refine(advice *a) {
 
 /* The one that works least, of those without drift, or with another integrator
    than that of all; NULL: there is none. */
-static study *least_of(const advice *a, bool steady, const study *without) {
+static study *least_of(const recommendation *a, bool steady,
+                       const study *without) {
     study *best = NULL;
     for (size_t i = 0; i < a->count; i++) {
         study *l = &a->study[i];
-        const row *r = advice_keeps(a, l);
+        const row *r = recommend_keeps(a, l);
         if (r && !(steady && row_drifts(r)) &&
             !(without && strcmp(without->integrator, l->integrator) == 0) &&
-            (!best || r->work < advice_keeps(a, best)->work))
+            (!best || r->work < recommend_keeps(a, best)->work))
             best = l;
     }
     return best;
@@ -86,14 +87,14 @@ static bool was_timed(const study *l) {
 
 /* Lists the rows that may win, be the runner-up or give other evidence, and are not
    timed yet, or have a cheaper level since; returns their number. */
-static size_t list_untimed(const advice *a, row *found[]) {
+static size_t list_untimed(const recommendation *a, row *found[]) {
     double least = least_work(a);
     study *second = least_of(a, false, least_of(a, false, NULL));
     study *steady = least_of(a, true, NULL);
     size_t count = 0;
     for (size_t i = 0; i < a->count; i++) {
         study *l = &a->study[i];
-        const row *r = advice_keeps(a, l);
+        const row *r = recommend_keeps(a, l);
         bool varied = strcmp(l->gradient, a->gradients.item[0]) != 0;
         if (r && isnan(r->seconds) &&
             (varied || was_timed(l) || l == second || l == steady ||
@@ -103,34 +104,34 @@ static size_t list_untimed(const advice *a, row *found[]) {
     return count;
 }
 
-void advice_time_once(advice *a) {
+void recommend_time_once(recommendation *a) {
     row **found = tool_allocate(a->count, sizeof *found);
     size_t count = list_untimed(a, found);
-    rows_settle(&a->search.plan, found, count, true);
+    rows_choose_native(&a->search.plan, found, count, true);
     for (size_t i = 0; i < count; i++)
         rows_time(&a->search.plan, &found[i], 1, 1, a->search.repeats > 0);
     free(found);
 }
 
-study *advice_next_best(const advice *a, const bool taken[]) {
+study *recommend_next_best(const recommendation *a, const bool taken[]) {
     study *best = NULL;
     double least = INFINITY;
     for (size_t i = 0; i < a->count; i++) {
-        const row *r = taken[i] ? NULL : advice_keeps(a, &a->study[i]);
+        const row *r = taken[i] ? NULL : recommend_keeps(a, &a->study[i]);
         if (r && r->seconds < least)
             least = r->seconds, best = &a->study[i];
     }
     return best;
 }
 
-static void add_study(advice *a, study l) {
+static void add_study(recommendation *a, study l) {
     a->study = tool_enlarge(a->study, a->count + 1, sizeof *a->study);
     a->study[a->count++] = l;
 }
 
 /* The same steps with another gradient, and finer ones where that is not
    enough. */
-static study with_gradient(advice *a, const study *l, int k,
+static study with_gradient(recommendation *a, const study *l, int k,
                            const char *gradient) {
     study other = study_like(l, gradient);
     for (int finer = 0; finer <= GRID_STRIDE; finer += GRID_COARSE) {
@@ -144,15 +145,15 @@ static study with_gradient(advice *a, const study *l, int k,
 
 /* The best, and those that take less than `factor` times as long; at most
    `most`.  With `gradients`: of those that take gradients. */
-static size_t list_best(const advice *a, double factor, bool gradients,
+static size_t list_best(const recommendation *a, double factor, bool gradients,
                         study *found[], size_t most) {
     bool *taken = tool_allocate(a->count, sizeof *taken);
     size_t count = 0;
     for (size_t i = 0; i < a->count; i++)
         taken[i] = gradients && !study_takes_gradients(&a->study[i]);
-    for (study *l; count < most && (l = advice_next_best(a, taken));) {
-        if (count && advice_keeps(a, l)->seconds >
-                         factor * advice_keeps(a, found[0])->seconds)
+    for (study *l; count < most && (l = recommend_next_best(a, taken));) {
+        if (count && recommend_keeps(a, l)->seconds >
+                         factor * recommend_keeps(a, found[0])->seconds)
             break;
         taken[l - a->study] = true;
         found[count++] = l;
@@ -163,7 +164,7 @@ static size_t list_best(const advice *a, double factor, bool gradients,
 
 /* Other gradients for the best few schemes: they change the price of a step,
    and where errors end, but hardly the step that is needed. */
-static void vary_gradients(advice *a) {
+static void vary_gradients(recommendation *a) {
     enum { FEW = 10 };
     static const double factor = 2.2;
     study *found[FEW], model[FEW];
@@ -171,7 +172,7 @@ static void vary_gradients(advice *a) {
     size_t count = list_best(a, factor, true, found, FEW);
     for (size_t i = 0; i < count; i++) {
         model[i] = *found[i];
-        k[i] = found[i]->k[advice_keeps(a, found[i]) - found[i]->level];
+        k[i] = found[i]->k[recommend_keeps(a, found[i]) - found[i]->level];
     }
     for (size_t i = 0; i < count; i++)
         for (size_t g = 1; g < a->gradients.count; g++)
@@ -181,7 +182,7 @@ static void vary_gradients(advice *a) {
 }
 
 /* The steps of those that may win, to the last place. */
-static void polish(advice *a) {
+static void polish(recommendation *a) {
     enum { FEW = 8 };
     static const double factor = 1.4;
     study *found[FEW];
@@ -192,13 +193,13 @@ static void polish(advice *a) {
 
 /* Errors do not fall evenly: of the best few, each place up to half a stride
    beyond what keeps the target. */
-static void look_beyond(advice *a) {
+static void look_beyond(recommendation *a) {
     enum { FEW = 8 };
     static const double factor = 1.4;
     study *found[FEW];
     size_t count = list_best(a, factor, false, found, FEW);
     for (size_t i = 0; i < count; i++) {
-        int from = found[i]->k[advice_keeps(a, found[i]) - found[i]->level];
+        int from = found[i]->k[recommend_keeps(a, found[i]) - found[i]->level];
         for (int k = from - 1; k >= from - GRID_STRIDE / 2; k--)
             if (!search_is_over(&a->search, 1) &&
                 found[i]->end != STUDY_GIVEN &&
@@ -209,7 +210,7 @@ static void look_beyond(advice *a) {
 }
 
 /* Medians for those that may win. */
-void advice_time_best(advice *a) {
+void recommend_time_best(recommendation *a) {
     enum { FEW = 24, USUAL = 9 };
     static const double factor = 1.7;
     study *found[FEW];
@@ -218,12 +219,12 @@ void advice_time_best(advice *a) {
     size_t repeats = a->search.repeats;
     for (size_t i = 0; i < count; i++)
         level[i] =
-            &found[i]->level[advice_keeps(a, found[i]) - found[i]->level];
+            &found[i]->level[recommend_keeps(a, found[i]) - found[i]->level];
     rows_time(&a->search.plan, level, count, repeats ? repeats : USUAL,
               repeats > 0);
 }
 
-void advice_take_gradients(advice *a, const options *o) {
+void recommend_take_gradients(recommendation *a, const options *o) {
     static const char *const names[] = {"exact",    "central4", "central2",
                                         "central6", "central8", "complex-step"};
     const plan *p = &a->search.plan;
@@ -235,10 +236,10 @@ void advice_take_gradients(advice *a, const options *o) {
             list_add(&a->gradients, names[i]);
 }
 
-void advice_choose(advice *a) {
+void recommend_choose(recommendation *a) {
     bool *taken = tool_allocate(a->count, sizeof *taken);
     a->best = a->second = a->alone = a->steady = NULL;
-    for (study *l; (l = advice_next_best(a, taken));) {
+    for (study *l; (l = recommend_next_best(a, taken));) {
         const char *name = l->integrator;
         taken[l - a->study] = true;
         if (!a->best)
@@ -248,21 +249,21 @@ void advice_choose(advice *a) {
         if (!a->alone && study_takes_gradients(l) &&
             strcmp(l->gradient, "exact") != 0)
             a->alone = l;
-        if (!a->steady && !row_drifts(advice_keeps(a, l)))
+        if (!a->steady && !row_drifts(recommend_keeps(a, l)))
             a->steady = l;
     }
     free(taken);
 }
 
 /* The other answers, where they are too dear to win. */
-static void polish_others(advice *a) {
+static void polish_others(recommendation *a) {
     study *const others[] = {a->second, a->alone, a->steady};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         if (others[i])
             study_refine(&a->search, others[i], a->target, 1);
 }
 
-void advice_search(advice *a) {
+void recommend_search(recommendation *a) {
     const plan *p = &a->search.plan;
     a->study = tool_allocate(p->integrators.count, sizeof *a->study);
     for (size_t i = 0; i < p->integrators.count; i++)
@@ -270,17 +271,17 @@ void advice_search(advice *a) {
             study_new(p, p->integrators.item[i], a->gradients.item[0]);
     descend(a);
     refine(a);
-    advice_time_once(a);
-    advice_time_best(a);
+    recommend_time_once(a);
+    recommend_time_best(a);
     vary_gradients(a);
-    advice_time_once(a);
+    recommend_time_once(a);
     polish(a);
-    advice_time_once(a);
+    recommend_time_once(a);
     look_beyond(a);
-    advice_time_once(a);
-    advice_time_best(a);
-    advice_choose(a);
+    recommend_time_once(a);
+    recommend_time_best(a);
+    recommend_choose(a);
     polish_others(a);
-    advice_time_once(a);
-    advice_choose(a);
+    recommend_time_once(a);
+    recommend_choose(a);
 }

@@ -49,8 +49,8 @@ search search_begin(const plan *p, const options *o, double budget) {
                 .started = cpu_seconds(),
                 .compiled = seconds_of_children(),
                 .landing = grid_dt(grid_dt_place(8 * search_longest_dt(p)))};
-    s.plan.hurried = true;
-    s.plan.patience =
+    s.plan.screening = true;
+    s.plan.work_limit =
         budget * fmax(one_row, one_scheme / (double)p->integrators.count);
     if (o->dt.count) {
         s.dt = ordered(p->dt, s.dts = p->dts);
@@ -66,14 +66,14 @@ const char *search_error(const search *s) {
                                 : "state";
 }
 
-bool search_is_late(const search *s) {
+bool search_out_of_time(const search *s) {
     return cpu_seconds() - s->started + seconds_of_children() - s->compiled >
            s->seconds;
 }
 
 /* True, too, on a machine so slow that the seconds end before the work does. */
 bool search_is_over(const search *s, double share) {
-    return s->spent > share * s->budget || search_is_late(s);
+    return s->spent > share * s->budget || search_out_of_time(s);
 }
 
 bool search_may_time(const search *s) {

@@ -28,7 +28,7 @@ study study_like(const study *l, const char *gradient) {
 void study_free(study *l) {
     for (size_t i = 0; i < l->count; i++) {
         free(l->level[i].status);
-        free(l->level[i].promise);
+        free(l->level[i].error_bound);
         free(l->level[i].energies);
     }
     free(l->level);
@@ -204,7 +204,7 @@ void study_begin(search *s, study *l) {
     }
     int k = adapts ? FIRST_TOLERANCE : first_place(s, l);
     size_t i = study_run(s, l, k);
-    if (l->level[i].late)
+    if (l->level[i].over_limit)
         l->end = STUDY_LIMIT;
     else if (!l->level[i].ran && !l->level[i].failed)
         l->end = STUDY_REFUSED;
@@ -258,7 +258,8 @@ static bool is_level(const study *l, bool by_state) {
 }
 
 bool study_ends_level(const study *l, bool by_state) {
-    return l->count && !l->level[l->count - 1].late && is_level(l, by_state);
+    return l->count && !l->level[l->count - 1].over_limit &&
+           is_level(l, by_state);
 }
 
 /* Coarse levels were of no use once a finer one is of some. */
@@ -281,7 +282,8 @@ static bool cannot_begin(const study *l) {
     enum { TRIES = 6 };
     size_t count = 0;
     for (size_t i = l->count; i-- > 0 && count < TRIES; count++)
-        if (!l->level[i].failed || l->level[i].late || l->level[i].steps > 0)
+        if (!l->level[i].failed || l->level[i].over_limit ||
+            l->level[i].steps > 0)
             break;
     return count == TRIES;
 }
@@ -293,11 +295,11 @@ void study_descend(search *s, study *l) {
         l->end = STUDY_FAILED;
     } else if (finest || is_level(l, s->by_state)) {
         l->end = STUDY_FLOOR;
-    } else if (next_work(l) > s->plan.patience) {
+    } else if (next_work(l) > s->plan.work_limit) {
         l->end = STUDY_LIMIT;
     } else {
         study_run(s, l, l->k[l->count - 1] + GRID_STRIDE);
-        if (l->level[l->count - 1].late)
+        if (l->level[l->count - 1].over_limit)
             give_up(l);
         drop_useless(l, s->by_state);
     }
@@ -439,7 +441,7 @@ const row *study_failure(const study *l) {
     for (size_t i = 0; i < l->count; i++)
         if (l->level[i].ran)
             return NULL;
-        else if (!failed && l->level[i].failed && !l->level[i].late)
+        else if (!failed && l->level[i].failed && !l->level[i].over_limit)
             failed = &l->level[i];
     return failed;
 }

@@ -45,7 +45,7 @@ typedef struct {
     study_end end;
 } study;
 typedef struct {
-    plan plan; /* a copy, in a hurry */
+    plan plan; /* a copy, for screening */
     bool by_state, quiet;
     bool keeping;   /* steps of those that keep the energy at any are of use */
     size_t repeats; /* 0: chosen */
@@ -65,7 +65,7 @@ typedef struct {
 search search_begin(const plan *, const options *, double budget);
 bool search_is_over(const search *, double share); /* of the budget */
 /* True if no seconds are left. */
-bool search_is_late(const search *);
+bool search_out_of_time(const search *);
 /* True if times may be measured again: this takes seconds, and changes no other
    column. */
 bool search_may_time(const search *);
@@ -113,7 +113,7 @@ const row *study_cheapest(const study *, double target, bool by_state);
    by study_begin. */
 bool study_keeps_energy(const study *);
 
-/* fit.c: whether a gradient of that name fits. */
+/* applicable.c: true if a gradient of that name fits. */
 bool gradient_fits(const plan *, const char *gradient, char **why);
 /* Makes the reference.  Otherwise the message is printed and the exit status
    returned. */

@@ -1,7 +1,7 @@
-/* nevh report: orbits as moving pictures.
+/* nevh report: animated orbits.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef NEVH_FILM_PRIVATE_H
-#define NEVH_FILM_PRIVATE_H
+#ifndef NEVH_ANIMATION_PRIVATE_H
+#define NEVH_ANIMATION_PRIVATE_H
 
 #include "experiment/plan.h"
 
@@ -11,24 +11,24 @@ typedef struct {
     size_t frames, columns;
     double *place; /* frames*columns: x, y of ends of rods, then of bobs */
     double *error; /* of the energy, relative; frames */
-} reel;
+} recording;
 
 /* A symplectic scheme, and the classical Runge-Kutta method, at one step. */
 typedef struct {
     plan *plan;
     size_t rods, bobs, most; /* most: frames */
     double dt;
-    bool tells; /* rk4 loses or gains what the other keeps */
-    reel reel[2];
-} film;
+    bool shows_drift; /* rk4 loses or gains what the other keeps */
+    recording recording[2];
+} animation;
 
-/* film.c: false: there is no picture, no scheme fits, it would be too large, or
+/* animation.c: false: there is no picture, no scheme fits, it would be too large, or
    there is friction, with which no scheme is symplectic.
    bytes  that its places may take */
-bool film_make(film *, plan *, size_t bytes);
-void film_free(film *);
+bool animation_make(animation *, plan *, size_t bytes);
+void animation_free(animation *);
 
-/* film_html.c: a figure that plays where scripts run, and is still elsewhere. */
-void film_html(const film *, FILE *);
+/* animation_html.c: a figure that plays where scripts run, and is still elsewhere. */
+void animation_html(const animation *, FILE *);
 
 #endif

@@ -11,19 +11,19 @@ static const double most_work = 6; /* as nevh_counts_seconds */
    errors that walk. */
 static const double margin = 0.98;
 
-static row *chosen(const advice *a, const study *l) {
+static row *chosen(const recommendation *a, const study *l) {
     const row *r = study_cheapest(l, a->target, a->search.by_state);
     return &l->level[r - l->level];
 }
 
 /* The same run once more, as `run` says; to be freed with its status. */
-static row again(const plan *run, const row *r, promise *made) {
+static row again(const plan *run, const row *r, error_bound *bound) {
     row copy = {.integrator = r->integrator,
                 .gradient = r->gradient,
                 .scheme = r->scheme,
                 .dt = r->step,
                 .tolerance = r->tolerance,
-                .promise = made};
+                .error_bound = bound};
     row_run(run, &copy);
     return copy;
 }
@@ -36,29 +36,29 @@ static void compare_orbit(const plan *p, row *r) {
     free(copy.status);
 }
 
-static void follow(const advice *a, const plan *longer, row *r) {
+static void follow(const recommendation *a, const plan *longer, row *r) {
     double start = longer->run->t_start;
-    promise *made = tool_allocate(1, sizeof *made);
-    *made = (promise){
+    error_bound *bound = tool_allocate(1, sizeof *bound);
+    *bound = (error_bound){
         .most = fmax(margin * a->target, study_error(r, a->search.by_state)),
         .by_state = a->search.by_state,
         .until = start};
-    row copy = again(longer, r, made);
-    if (copy.late)
-        made->unknown = true;
-    else if (!copy.ran && !made->unknown)
-        made->broken = true;
+    row copy = again(longer, r, bound);
+    if (copy.over_limit)
+        bound->unknown = true;
+    else if (!copy.ran && !bound->unknown)
+        bound->broken = true;
     free(copy.status);
-    if (!made->broken) /* the run itself keeps it */
-        made->until = fmax(made->until, a->search.plan.t_end);
-    r->promise = made;
+    if (!bound->broken) /* the run itself keeps it */
+        bound->until = fmax(bound->until, a->search.plan.t_end);
+    r->error_bound = bound;
 }
 
 /* Three times as long, with a reference of its own where states count. */
-static plan longer_plan(advice *a) {
+static plan longer_plan(recommendation *a) {
     plan longer = a->search.plan;
     double start = longer.run->t_start;
-    longer.patience = most_work;
+    longer.work_limit = most_work;
     longer.t_end = start + lengths * (longer.t_end - start);
     a->longer = longer.t_end;
     longer.reference = NULL;
@@ -71,17 +71,17 @@ static plan longer_plan(advice *a) {
     return longer;
 }
 
-static void find_period(advice *a) {
+static void find_period(recommendation *a) {
     trial_run f = trial_run_new(&a->search.plan, false);
     a->period = f.frequency > 0 ? 2 * acos(-1) / f.frequency : NAN;
     free(f.failure);
 }
 
-void advice_follow(advice *a, plan *p) {
-    const study *found[ADVICE_MOST];
-    size_t count = advice_list(a, found);
+void recommend_follow(recommendation *a, plan *p) {
+    const study *found[RECOMMEND_MOST];
+    size_t count = recommend_list(a, found);
     plan *whole = &a->search.plan;
-    whole->patience = 0;
+    whole->work_limit = 0;
     if (!a->search.by_state) {
         plan_reference(p, whole->t_end);
         whole->reference = p->reference;
@@ -100,13 +100,13 @@ void advice_follow(advice *a, plan *p) {
         nevh_reference_free(longer.reference);
         free(longer.no_reference);
     }
-    whole->promises = true;
+    whole->error_bounds = true;
     find_period(a);
 }
 
-double advice_holds(const row *r) {
-    const promise *made = r->promise;
-    if (!made)
+double recommend_holds(const row *r) {
+    const error_bound *bound = r->error_bound;
+    if (!bound)
         return NAN;
-    return made->broken || made->unknown ? made->until : INFINITY;
+    return bound->broken || bound->unknown ? bound->until : INFINITY;
 }

@@ -5,15 +5,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const row *chosen(const advice *a, const study *l) {
+static const row *chosen(const recommendation *a, const study *l) {
     return study_cheapest(l, a->target, a->search.by_state);
 }
 
-size_t advice_list(const advice *a, const study *found[ADVICE_MOST]) {
-    const study *const all[ADVICE_MOST] = {a->best, a->second, a->alone,
-                                           a->steady};
+size_t recommend_list(const recommendation *a,
+                      const study *found[RECOMMEND_MOST]) {
+    const study *const all[RECOMMEND_MOST] = {a->best, a->second, a->alone,
+                                              a->steady};
     size_t count = 0;
-    for (size_t i = 0; i < ADVICE_MOST; i++) {
+    for (size_t i = 0; i < RECOMMEND_MOST; i++) {
         bool known = !all[i];
         for (size_t k = 0; k < count; k++)
             known |= found[k] == all[i];
@@ -23,15 +24,15 @@ size_t advice_list(const advice *a, const study *found[ADVICE_MOST]) {
     return count;
 }
 
-static const char *name_of(const advice *a, const study *l) {
+static const char *name_of(const recommendation *a, const study *l) {
     return l == a->best     ? "cheapest"
            : l == a->second ? "runner-up"
            : l == a->alone  ? "from H alone"
                             : "no drift";
 }
 
-static void show_end(const advice *a, const row *r, table *t) {
-    double holds = advice_holds(r);
+static void show_end(const recommendation *a, const row *r, table *t) {
+    double holds = recommend_holds(r);
     if (isnan(holds))
         table_text(t, NULL);
     else if (isinf(holds))
@@ -40,11 +41,12 @@ static void show_end(const advice *a, const row *r, table *t) {
         table_shown(t, "%.4g", holds);
 }
 
-static bool has_states(const advice *a) {
+static bool has_states(const recommendation *a) {
     return !a->search.by_state && a->search.plan.reference;
 }
 
-static void show(const advice *a, const study *l, const char *what, table *t) {
+static void show(const recommendation *a, const study *l, const char *what,
+                 table *t) {
     const row *r = chosen(a, l);
     table_text(t, what);
     table_text(t, r->integrator);
@@ -60,7 +62,7 @@ static void show(const advice *a, const study *l, const char *what, table *t) {
     table_text(t, nevh_verdict_name(r->energy.verdict));
 }
 
-static table *shown(const advice *a) {
+static table *shown(const recommendation *a) {
     table *t = table_new();
     table_column(t, "");
     table_column(t, "integrator");
@@ -76,23 +78,24 @@ static table *shown(const advice *a) {
     table_column(t, "gradients");
     table_column(t, "H evals");
     table_column(t, "energy");
-    const study *found[ADVICE_MOST];
-    size_t count = advice_list(a, found);
+    const study *found[RECOMMEND_MOST];
+    size_t count = recommend_list(a, found);
     for (size_t i = 0; i < count; i++)
         show(a, found[i], name_of(a, found[i]), t);
     return t;
 }
 
-static size_t list_rows(const advice *a, row rows[ADVICE_MOST]) {
-    const study *found[ADVICE_MOST];
-    size_t count = advice_list(a, found);
+static size_t list_rows(const recommendation *a, row rows[RECOMMEND_MOST]) {
+    const study *found[RECOMMEND_MOST];
+    size_t count = recommend_list(a, found);
     for (size_t i = 0; i < count; i++)
         rows[i] = *chosen(a, found[i]);
     return count;
 }
 
 /* As the rows were run. */
-static char *command_line(const advice *a, const options *o, const row *r) {
+static char *command_line(const recommendation *a, const options *o,
+                          const row *r) {
     const plan *p = &a->search.plan;
     char *text = shell_line(o, "compare", p->name);
     text = shell_option(text, "integrators", r->integrator);
@@ -111,7 +114,7 @@ static char *command_line(const advice *a, const options *o, const row *r) {
     return text;
 }
 
-static void tell_lines(const advice *a, const row *r, list *words) {
+static void setting_words(const recommendation *a, const row *r, list *words) {
     list_add(words, "  [run]");
     list_print(words, "  integrators = %s", r->integrator);
     if (study_takes_gradients(a->best))
@@ -123,7 +126,7 @@ static void tell_lines(const advice *a, const row *r, list *words) {
 }
 
 /* In the observable's unit. */
-static void tell_size(const advice *a, const row *r, list *words) {
+static void size_words(const recommendation *a, const row *r, list *words) {
     const plan *p = &a->search.plan;
     const char *unit =
         nevh_scene_label(p->scene, p->observable ? p->observable : "");
@@ -134,7 +137,7 @@ static void tell_size(const advice *a, const row *r, list *words) {
 }
 
 /* In the orbit's own measure. */
-static void tell_steps(const advice *a, const row *r, list *words) {
+static void step_words(const recommendation *a, const row *r, list *words) {
     const char *unit = nevh_scene_label(a->search.plan.scene, "t");
     double steps = a->period / r->dt;
     if (isfinite(steps))
@@ -147,8 +150,8 @@ static void tell_steps(const advice *a, const row *r, list *words) {
                    unit);
 }
 
-static void tell_longer(const advice *a, const row *r, list *words) {
-    double holds = advice_holds(r);
+static void longer_words(const recommendation *a, const row *r, list *words) {
+    double holds = recommend_holds(r);
     if (a->not_longer)
         list_print(words, "Nothing is known of longer runs: %s.",
                    a->not_longer);
@@ -157,23 +160,23 @@ static void tell_longer(const advice *a, const row *r, list *words) {
                    "It keeps that in a run three times as long, too, until t = "
                    "%g.",
                    a->longer);
-    else if (r->promise && r->promise->broken)
+    else if (r->error_bound && r->error_bound->broken)
         list_print(words,
                    "In a longer run that holds until t = %.6g: beyond it ask "
                    "again, with --t-end.",
                    holds);
-    else if (r->promise && holds > a->search.plan.t_end)
+    else if (r->error_bound && holds > a->search.plan.t_end)
         list_print(words,
                    "In a longer run that holds until t = %.6g at least, up to "
                    "which it was followed.",
                    holds);
-    else if (r->promise)
+    else if (r->error_bound)
         list_add(words, "Longer runs were not followed to their end, for the "
                         "time that they take.");
 }
 
 /* Warns of errors that the energy does not show. */
-static void warn(const advice *a, const row *r, list *words) {
+static void warn(const recommendation *a, const row *r, list *words) {
     const plan *p = &a->search.plan;
     if (a->search.by_state || !p->reference)
         return;
@@ -195,7 +198,7 @@ static void warn(const advice *a, const row *r, list *words) {
 }
 
 /* On its energy, as far as the run, or a longer one, decides it. */
-static void tell_verdict(const row *r, list *words) {
+static void drift_words(const row *r, list *words) {
     if (row_drifts(r))
         list_add(words, "Its energy drifts: for longer runs ask again.");
     if (r->followed > 0 && (r->open || r->energy.verdict != NEVH_BOUNDED))
@@ -209,7 +212,8 @@ static void tell_verdict(const row *r, list *words) {
                    "follows it further, as may a longer --t-end.");
 }
 
-static void tell_answer(const advice *a, const options *o, list *words) {
+static void answer_words(const recommendation *a, const options *o,
+                         list *words) {
     const row *r = chosen(a, a->best);
     const char *what = search_error(&a->search);
     char *line = command_line(a, o, r);
@@ -222,11 +226,11 @@ static void tell_answer(const advice *a, const options *o, list *words) {
                r->tolerance > 0 ? "tolerance" : "dt",
                r->tolerance > 0 ? r->tolerance : r->dt, what,
                study_error(r, a->search.by_state), a->target);
-    tell_size(a, r, words);
-    tell_steps(a, r, words);
-    tell_longer(a, r, words);
+    size_words(a, r, words);
+    step_words(a, r, words);
+    longer_words(a, r, words);
     warn(a, r, words);
-    tell_verdict(r, words);
+    drift_words(r, words);
     if (isfinite(a->whole) && a->pilot < a->whole)
         list_print(words, "Chosen by runs until t = %g, and verified until %g.",
                    a->pilot, a->whole);
@@ -248,14 +252,14 @@ static void tell_answer(const advice *a, const options *o, list *words) {
     list_add(words, " ");
     list_add(words, line);
     list_add(words, " ");
-    tell_lines(a, r, words);
+    setting_words(a, r, words);
     free(line);
 }
 
-void advice_print(const advice *a, const options *o, FILE *f) {
+void recommend_print(const recommendation *a, const options *o, FILE *f) {
     const plan *searched = &a->search.plan;
     bool is_table = o->format == FORMAT_TABLE;
-    row rows[ADVICE_MOST];
+    row rows[RECOMMEND_MOST];
     size_t count = list_rows(a, rows);
     page p = {.table = is_table ? shown(a) : records(searched, rows, count)};
     if (!is_table || !o->quiet) {
@@ -264,7 +268,7 @@ void advice_print(const advice *a, const options *o, FILE *f) {
         time_notes(searched, &p.before);
         state_notes(searched, &p.before);
         observable_notes(searched, &p.before);
-        tell_answer(a, o, &p.after);
+        answer_words(a, o, &p.after);
         time_words(searched, rows, count, &p.after);
         passed_words(searched, rows, count, &p.after);
     }
@@ -272,13 +276,14 @@ void advice_print(const advice *a, const options *o, FILE *f) {
     page_free(&p);
 }
 
-static bool counts(const advice *a, size_t i) {
+static bool counts(const recommendation *a, size_t i) {
     return a->named || a->search.by_state || !study_keeps_energy(&a->study[i]);
 }
 
 /* Finds the smallest error of the studies that count; at_floor: of those that ended
    at their floor. */
-static const study *most_exact(const advice *a, bool at_floor, double *least) {
+static const study *most_exact(const recommendation *a, bool at_floor,
+                               double *least) {
     const study *best = NULL;
     *least = INFINITY;
     for (size_t i = 0; i < a->count; i++)
@@ -301,7 +306,7 @@ static const char *floor_of(const study *l, double least) {
 
 /* If the most exact study ended before its floor, another study whose floor is near
    the same error shows the effect of shorter steps. */
-static char *reason(const advice *a, const study *l, double least) {
+static char *reason(const recommendation *a, const study *l, double least) {
     static const double near = 30;
     double level;
     const study *floor = most_exact(a, true, &level);
@@ -318,7 +323,7 @@ static char *reason(const advice *a, const study *l, double least) {
 }
 
 /* Prints the reason why no error is there to choose by. */
-static void tell_why(const advice *a) {
+static void print_reason(const recommendation *a) {
     const char *name = a->search.plan.name;
     const row *failed = NULL;
     bool keeps = false, late = false;
@@ -327,7 +332,7 @@ static void tell_why(const advice *a) {
         keeps |= !counts(a, i) && l->count && l->level[0].ran;
         late |= l->end == STUDY_LIMIT;
         for (size_t k = 0; k < l->count && !failed; k++)
-            if (l->level[k].failed && !l->level[k].late)
+            if (l->level[k].failed && !l->level[k].over_limit)
                 failed = &l->level[k];
     }
     if (keeps)
@@ -347,13 +352,13 @@ static void tell_why(const advice *a) {
         tool_refuse("%s: no integrator fits; see nevh check", name);
 }
 
-int advice_none(const advice *a) {
+int recommend_none(const recommendation *a) {
     double least;
     const study *l = most_exact(a, false, &least);
     const char *what = search_error(&a->search);
     double end = a->search.plan.t_end;
     if (!l) {
-        tell_why(a);
+        print_reason(a);
         return TOOL_FAILED;
     }
     char *until = end < a->whole ? text_print(" until t = %g", end)

@@ -1,6 +1,6 @@
 /* nevh report: a moving picture as SVG, with a script that moves it.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "film_private.h"
+#include "animation_private.h"
 #include "plot/plot.h"
 #include "report_private.h"
 #include <math.h>
@@ -63,7 +63,7 @@ typedef struct {
     int height;
 } view;
 
-static view view_of(const reel *r) {
+static view view_of(const recording *r) {
     static const double room = 0.12;
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (size_t i = 0; i < r->frames * r->columns; i++) {
@@ -89,11 +89,11 @@ static int down(const view *v, double y) {
     return (int)fmin(fmax(round((v->y - y) * v->scale), -FAR), FAR);
 }
 
-static const double *frame(const reel *r, size_t i) {
+static const double *frame(const recording *r, size_t i) {
     return r->place + (i < r->frames ? i : r->frames - 1) * r->columns;
 }
 
-static void put_places_of(const film *f, const reel *r, const view *v,
+static void put_places_of(const animation *f, const recording *r, const view *v,
                           size_t bob, size_t first, FILE *to) {
     for (size_t i = first; i < r->frames; i++) {
         const double *at = frame(r, i) + 4 * f->rods + 2 * bob;
@@ -103,8 +103,8 @@ static void put_places_of(const film *f, const reel *r, const view *v,
 }
 
 /* The whole way faintly, the last steps more. */
-static void put_trail(const film *f, const reel *r, const view *v, size_t bob,
-                      FILE *to) {
+static void put_trail(const animation *f, const recording *r, const view *v,
+                      size_t bob, FILE *to) {
     const char *colour = plot_colours[bob % PLOT_COLOURS];
     size_t last = r->frames - 1;
     fprintf(to,
@@ -120,7 +120,8 @@ static void put_trail(const film *f, const reel *r, const view *v, size_t bob,
 }
 
 /* At the last step. */
-static void put_orbit(const film *f, const reel *r, const view *v, FILE *to) {
+static void put_orbit(const animation *f, const recording *r, const view *v,
+                      FILE *to) {
     const double *at = frame(r, f->most);
     fputs("<g class=\"orbit\" stroke-width=\"5\">\n", to);
     for (size_t i = 0; i < f->bobs; i++)
@@ -138,8 +139,8 @@ static void put_orbit(const film *f, const reel *r, const view *v, FILE *to) {
     fputs("</g>\n", to);
 }
 
-static void put_panel(const film *f, size_t i, const view *v, FILE *to) {
-    const reel *r = &f->reel[i];
+static void put_panel(const animation *f, size_t i, const view *v, FILE *to) {
+    const recording *r = &f->recording[i];
     int left = i ? WIDTH - PANEL : 0;
     fprintf(to,
             "<text x=\"%d\" y=\"58\" fill=\"%s\">%s, error <tspan "
@@ -153,12 +154,12 @@ static void put_panel(const film *f, size_t i, const view *v, FILE *to) {
 }
 
 /* Errors of both over the steps. */
-static void put_strip(const film *f, int top, FILE *to) {
+static void put_strip(const animation *f, int top, FILE *to) {
     double low = 0, high = 0;
     for (int i = 0; i < 2; i++)
-        for (size_t k = 0; k < f->reel[i].frames; k++) {
-            low = fmin(low, f->reel[i].error[k]);
-            high = fmax(high, f->reel[i].error[k]);
+        for (size_t k = 0; k < f->recording[i].frames; k++) {
+            low = fmin(low, f->recording[i].error[k]);
+            high = fmax(high, f->recording[i].error[k]);
         }
     double scale = STRIP / (high > low ? high - low : 1);
     fprintf(to,
@@ -173,9 +174,9 @@ static void put_strip(const film *f, int top, FILE *to) {
                 "<polyline fill=\"none\" stroke=\"%s\" stroke-width=\"5\" "
                 "points=\"",
                 plot_colours[i]);
-        for (size_t k = 0; k < f->reel[i].frames; k++)
+        for (size_t k = 0; k < f->recording[i].frames; k++)
             fprintf(to, "%.0f,%.0f ", (double)(WIDTH * k) / (double)f->most,
-                    (high - f->reel[i].error[k]) * scale);
+                    (high - f->recording[i].error[k]) * scale);
         fputs("\"/>\n", to);
     }
     fprintf(to,
@@ -184,54 +185,54 @@ static void put_strip(const film *f, int top, FILE *to) {
             WIDTH, WIDTH, STRIP);
 }
 
-static void put_places(const reel *r, const view *v, FILE *to) {
+static void put_places(const recording *r, const view *v, FILE *to) {
     for (size_t i = 0; i < r->frames * r->columns; i++)
         fprintf(to, "%s%d", i ? "," : "[",
                 i % 2 ? down(v, r->place[i]) : across(v, r->place[i]));
     fputs("]", to);
 }
 
-static void put_errors(const reel *r, FILE *to) {
+static void put_errors(const recording *r, FILE *to) {
     for (size_t i = 0; i < r->frames; i++)
         fprintf(to, "%s%.2g", i ? "," : "[", 100 * r->error[i]);
     fputs("]", to);
 }
 
-/* Digits after the point that tell steps apart. */
-static int digits_of(const film *f) {
+/* Digits after the point that distinguish steps. */
+static int digits_of(const animation *f) {
     return (int)fmin(fmax(0, 1 - floor(log10(f->dt))), 12);
 }
 
-static void put_data(const film *f, const view *v, FILE *to) {
+static void put_data(const animation *f, const view *v, FILE *to) {
     fprintf(to,
             "<script type=\"application/json\">{\"steps\":%zu,\"dt\":%.17g,"
             "\"start\":%.17g,\"digits\":%d,\"rods\":%zu,\"columns\":%zu,"
             "\"trail\":%d,\"width\":%d,\"places\":[",
             f->most, f->dt, f->plan->run->t_start, digits_of(f), f->rods,
-            f->reel->columns, TRAIL, WIDTH);
-    put_places(&f->reel[0], v, to);
+            f->recording->columns, TRAIL, WIDTH);
+    put_places(&f->recording[0], v, to);
     fputs(",\n", to);
-    put_places(&f->reel[1], v, to);
+    put_places(&f->recording[1], v, to);
     fputs("],\n\"errors\":[", to);
-    put_errors(&f->reel[0], to);
+    put_errors(&f->recording[0], to);
     fputs(",\n", to);
-    put_errors(&f->reel[1], to);
+    put_errors(&f->recording[1], to);
     fputs("]}</script>\n", to);
 }
 
-static double worst(const reel *r) {
+static double worst(const recording *r) {
     double most = 0;
     for (size_t i = 0; i < r->frames; i++)
         most = fmax(most, fabs(r->error[i]));
     return 100 * most;
 }
 
-static void put_words(const film *f, FILE *to) {
-    const reel *rk4 = &f->reel[1];
+static void put_words(const animation *f, FILE *to) {
+    const recording *rk4 = &f->recording[1];
     const char *unit = nevh_scene_label(f->plan->scene, "t");
     double end = 100 * rk4->error[rk4->frames - 1];
-    fprintf(to, "<p>%s and rk4 take %zu steps of %.3g%s", f->reel->integrator,
-            f->most, f->dt, *unit ? " " : "");
+    fprintf(to, "<p>%s and rk4 take %zu steps of %.3g%s",
+            f->recording->integrator, f->most, f->dt, *unit ? " " : "");
     html_text(to, unit);
     if (rk4->frames <= f->most)
         fprintf(to, "; rk4 ends at step %zu.", rk4->frames - 1);
@@ -242,15 +243,15 @@ static void put_words(const film *f, FILE *to) {
         fprintf(to, ". The energy error of rk4 stays within %.2g %%.",
                 worst(rk4));
     fprintf(to, " The energy error of %s stays within %.2g %%.%s</p>\n",
-            f->reel->integrator, worst(f->reel),
-            f->tells
+            f->recording->integrator, worst(f->recording),
+            f->shows_drift
                 ? ""
                 : " Of the steps that were tried, rk4 has at none an error "
                   "that is large while that of the other is small; these "
                   "are the longest of the scene.");
 }
 
-static void put_caption(const film *f, FILE *to) {
+static void put_caption(const animation *f, FILE *to) {
     const char *unit = nevh_scene_label(f->plan->scene, "t");
     double end = f->plan->run->t_start + (double)f->most * f->dt;
     fprintf(to, "<figcaption><span class=\"stamp\">step %zu, t = %.*f</span> ",
@@ -264,8 +265,8 @@ static void put_caption(const film *f, FILE *to) {
             f->most, f->most);
 }
 
-void film_html(const film *f, FILE *to) {
-    view v = view_of(&f->reel[0]);
+void animation_html(const animation *f, FILE *to) {
+    view v = view_of(&f->recording[0]);
     int top = HEAD + v.height;
     put_words(f, to);
     fprintf(to,
@@ -274,8 +275,8 @@ void film_html(const film *f, FILE *to) {
             "motion by %s and by rk4</title>\n<desc>Left: %s. Right: rk4. "
             "Below: the energy errors of both, %s blue, rk4 orange. Without a "
             "script, and before it plays, the picture shows step %zu.</desc>\n",
-            WIDTH, top + HEAD + STRIP + FOOT - 50, f->reel->integrator,
-            f->reel->integrator, f->reel->integrator, f->most);
+            WIDTH, top + HEAD + STRIP + FOOT - 50, f->recording->integrator,
+            f->recording->integrator, f->recording->integrator, f->most);
     put_panel(f, 0, &v, to);
     put_panel(f, 1, &v, to);
     put_strip(f, top, to);

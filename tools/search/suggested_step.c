@@ -16,13 +16,13 @@ enum { FINER = 3, HALVINGS = 60 };
 typedef struct {
     double dt;    /* 0: none was found */
     bool guessed; /* from how long shorter steps keep it: it was not run */
-} remedy;
+} suggested_step;
 
 typedef struct {
     const plan *plan;
     const row *row;
     double work, *q, *p;
-} search;
+} step_search;
 
 typedef struct {
     nevh_energy *energy;
@@ -43,7 +43,7 @@ static int watch(void *data, size_t step, double t, const double q[],
 
 /* A run with that dt, for as long as the error keeps the target at each of so
    many steps. */
-static attempt run(search *s, double dt, size_t every) {
+static attempt run(step_search *s, double dt, size_t every) {
     const plan *p = s->plan;
     row r = *s->row;
     double stopped;
@@ -64,7 +64,7 @@ static attempt run(search *s, double dt, size_t every) {
 }
 
 /* Most runs fail, for which a look from time to time is enough. */
-static attempt try_step(search *s, double dt) {
+static attempt try_step(step_search *s, double dt) {
     attempt a = run(s, dt, 8);
     return a.kept ? run(s, dt, 1) : a;
 }
@@ -79,7 +79,7 @@ static double rounded_down(double x, int digits) {
 }
 
 /* Between steps that keep the target and such that do not. */
-static double refine(search *s, double kept, double lost) {
+static double refine(step_search *s, double kept, double lost) {
     for (int i = 0; i < FINER && s->work < most_work; i++) {
         double dt = rounded_down(sqrt(kept * lost), 2);
         if (dt <= kept)
@@ -95,8 +95,8 @@ static double refine(search *s, double kept, double lost) {
 /* From the times that two steps keep the target for, along a power law; none
    where these do not grow as such steps let expect, nor where H reads t: what it
    does later, as a next pulse, no shorter run shows. */
-static double guess(const search *s, double dt, double keeps, double longer_dt,
-                    double longer_keeps) {
+static double guess(const step_search *s, double dt, double keeps,
+                    double longer_dt, double longer_keeps) {
     double span = s->plan->t_end - s->plan->run->t_start;
     double power = log(keeps / longer_keeps) / log(longer_dt / dt);
     if (s->plan->time || !(power > 0.5 && power < 12))
@@ -106,13 +106,13 @@ static double guess(const search *s, double dt, double keeps, double longer_dt,
 
 /* Predicts the number of steps of a run with half the step from the growth of that
    number. */
-static double next_steps(const search *s, double dt, double steps,
+static double next_steps(const step_search *s, double dt, double steps,
                          double steps_before) {
     double span = s->plan->t_end - s->plan->run->t_start;
     return fmin(span / dt, fmax(steps, steps * steps / steps_before));
 }
 
-static remedy look(search *s) {
+static suggested_step look(step_search *s) {
     double start = s->plan->run->t_start;
     double before = s->row->dt, kept_before = NAN, steps_before = NAN;
     for (int i = 0; i < HALVINGS; i++) {
@@ -120,45 +120,45 @@ static remedy look(search *s) {
         attempt a = try_step(s, dt);
         double keeps = a.t - start;
         if (a.kept)
-            return (remedy){refine(s, dt, before), false};
+            return (suggested_step){refine(s, dt, before), false};
         double steps = (double)a.steps, guessed = 0;
         bool last = s->work > most_work || steps > most_steps;
         if (last || (steps > enough_steps &&
                      next_steps(s, dt / 2, steps, steps_before) > most_steps))
             guessed = guess(s, dt, keeps, before, kept_before);
         if (last || guessed > 0)
-            return (remedy){guessed, true};
+            return (suggested_step){guessed, true};
         before = dt;
         kept_before = keeps;
         steps_before = steps;
     }
-    return (remedy){0, false};
+    return (suggested_step){0, false};
 }
 
-static remedy find(const plan *p, const row *r) {
-    search s = {.plan = p,
-                .row = r,
-                .q = tool_allocate(p->n, sizeof(double)),
-                .p = tool_allocate(p->n, sizeof(double))};
-    remedy found = look(&s);
+static suggested_step find(const plan *p, const row *r) {
+    step_search s = {.plan = p,
+                     .row = r,
+                     .q = tool_allocate(p->n, sizeof(double)),
+                     .p = tool_allocate(p->n, sizeof(double))};
+    suggested_step found = look(&s);
     free(s.q);
     free(s.p);
     return found;
 }
 
-static bool needs_remedy(const row *r) {
+static bool needs_shorter_step(const row *r) {
     bool drifts = r->energy.verdict == NEVH_DRIFTS && r->energy.max > target;
     return r->ran && r->tolerance == 0 &&
            (drifts || r->energy.verdict == NEVH_UNSTABLE);
 }
 
-/* The row with the shortest steps of those of one integrator that need a remedy;
+/* The row with the shortest steps of those of one integrator that need a shorter step;
    NULL unless `first` is the first of them. */
 static const row *shortest(const row rows[], size_t count, const row *first) {
     const row *found = first;
     for (const row *r = rows; r < rows + count; r++) {
-        bool same =
-            strcmp(r->integrator, first->integrator) == 0 && needs_remedy(r);
+        bool same = strcmp(r->integrator, first->integrator) == 0 &&
+                    needs_shorter_step(r);
         if (same && r < first)
             return NULL;
         if (same && r->dt < found->dt)
@@ -167,13 +167,13 @@ static const row *shortest(const row rows[], size_t count, const row *first) {
     return found;
 }
 
-static void tell_remedy(const plan *p, const row *r, list *words) {
+static void row_words(const plan *p, const row *r, list *words) {
     const char *unit = nevh_scene_label(p->scene, "t"), *gap = *unit ? " " : "";
     bool loses = nevh_integrator_symplectic(r->scheme) == NEVH_NO;
     bool always = loses && nevh_stability_limit(r->scheme) == 0;
     const char *gains = always ? " gains energy at every dt, and" : "";
     const char *other = loses ? ", or a symplectic scheme" : "";
-    remedy found = find(p, r);
+    suggested_step found = find(p, r);
     if (found.dt > 0 && found.guessed)
         list_print(words,
                    "%s%s would keep its error below %g %% until t = %.4g%s%s "
@@ -189,11 +189,13 @@ static void tell_remedy(const plan *p, const row *r, list *words) {
                    gap, unit, other);
 }
 
-void remedy_words(const plan *p, const row rows[], size_t count, list *words) {
+void suggested_step_words(const plan *p, const row rows[], size_t count,
+                          list *words) {
     for (size_t i = 0; i < count; i++) {
-        const row *r =
-            needs_remedy(&rows[i]) ? shortest(rows, count, &rows[i]) : NULL;
+        const row *r = needs_shorter_step(&rows[i])
+                           ? shortest(rows, count, &rows[i])
+                           : NULL;
         if (r)
-            tell_remedy(p, r, words);
+            row_words(p, r, words);
     }
 }
