@@ -328,7 +328,11 @@ step_texts = integrators/kernels/splitting_step.h \
 	lib/native/steps/implicit_driver.h \
 	lib/native/steps/implicit_orbit.h \
 	lib/native/steps/implicit_lanes.h \
-	lib/native/steps/entry.h
+	lib/native/steps/entry.h \
+	lib/native/steps/block_driver.h \
+	lib/native/steps/long_driver.h \
+	lib/native/steps/compiled_needs.h \
+	lib/native/steps/program_needs.h
 nodist_libnevh_core_la_SOURCES = lib/native/kernel_texts.c
 lib/native/kernel_texts.c: lib/local.mk lib/native/kernel_texts.awk $(step_texts)
 	$(MKDIR_P) lib/native

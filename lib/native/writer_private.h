@@ -128,6 +128,10 @@ extern const char *const nevh__implicit_driver_text[];
 extern const char *const nevh__implicit_orbit_text[];
 extern const char *const nevh__implicit_lanes_text[];
 extern const char *const nevh__entry_text[];
+extern const char *const nevh__block_driver_text[];
+extern const char *const nevh__long_driver_text[];
+extern const char *const nevh__compiled_needs_text[];
+extern const char *const nevh__program_needs_text[];
 extern const char *const nevh__fraction_text[];
 
 /* How C text has numbers side by side. */

@@ -1,12 +1,25 @@
 /* nevh tests: a header of lib/native/steps as it stands, with what it needs of a
    scene.  STEPS: its name; FAMILY_*: whose.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "system/vector_private.h"
+#if defined FAMILY_DRIVER && !defined NEVH__FOR_READERS
+/* Of what formulas have before them. */
+typedef __SIZE_TYPE__ size;
+#define INLINE static inline
+#define CONST  __attribute__((const))
+typedef double wide __attribute__((vector_size(64), aligned(8)));
+extern double fabs(double) CONST;
+#include "native/steps/compiled_needs.h"
+#define TABLE(b) (N + (b))
+#else
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <string.h>
 
+#ifdef FAMILY_DRIVER
+#include "native/steps/program_needs.h"
+#else
+#include "system/vector_private.h"
 #ifdef NEVH__FOR_READERS
 #define NEVH__COMPILED(...)
 static const double SCALES[4] = {1, 1, 1, 1};
@@ -24,6 +37,54 @@ typedef nevh__vector slope_number;
 #else
 typedef nevh__number slope_number;
 #endif
+#endif
+#endif
+
+#ifdef FAMILY_DRIVER
+#ifdef NEVH__WIDE
+enum { LANES = 8 };
+#else
+enum { LANES = 1 };
+#endif
+enum {
+    ONE = 2,
+    GROUP = 1,
+    DOF = ONE * GROUP,
+    WIDTH = LANES,
+    BLOCKS = 1,
+    KEPT = DOF,
+    COUNT = DOF * LANES,
+    ROWS_BEFORE = 3
+};
+#ifdef NEVH__FOR_READERS
+static inline double take_step(double t, double h, double *y, double *lost,
+                               double *kept) {
+    (void)lost, (void)kept;
+    return t + h * y[0];
+}
+#else
+size_t nevh_native_steps(const double *N, double *W, double *T,
+                         size_t operations, double t0, double h, size_t from,
+                         size_t steps, double *Q, double *P, double *M,
+                         size_t *counted, double *room);
+static inline nevh__number take_step(const double *N, double *W, double *T,
+                                     size_t operations, double t, double h,
+                                     nevh__number *y, nevh__number *lost,
+                                     nevh__number *kept, nevh__number *room) {
+    (void)N, (void)W, (void)T, (void)operations, (void)room, (void)lost;
+    y[0] += t + h;
+    return kept[0] - kept[0];
+}
+static inline nevh__number take_first(const double *N, const double *T,
+                                      double t, double h, const nevh__number *y,
+                                      const nevh__number *lost,
+                                      nevh__number *kept, nevh__number *room) {
+    (void)N, (void)T, (void)room, (void)lost;
+    kept[0] = y[0] + t + h;
+    return kept[0] - kept[0];
+}
+#endif
+#else
 enum { DOF = 2 };
 
 /* H = (p^2 + q^2)/2. */
@@ -43,6 +104,8 @@ drift_slope(NEVH__COMPILED(const double *N, ) slope_number t,
     (void)q;
     return kick_slope(NEVH__COMPILED(N, ) t, p, q, slope);
 }
+
+#endif
 
 #ifdef FAMILY_ADAPTIVE
 enum { KEEPS = true, COARSE = true };
@@ -104,6 +167,7 @@ static inline double worst_noise(NEVH__COMPILED(const double *N, ) double t,
 #endif
 
 #include STEPS
-#if !defined NEVH__FOR_READERS && !defined FAMILY_ADAPTIVE_VERLET
+#if !defined NEVH__FOR_READERS && !defined FAMILY_ADAPTIVE_VERLET &&           \
+    !defined FAMILY_DRIVER
 #include "native/steps/entry.h"
 #endif

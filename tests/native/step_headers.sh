@@ -37,6 +37,18 @@ for compiler in "$cc" clang; do
             -DNEVH__DIFFERENCES
     done
     compiles $compiler IMPLICIT native/steps/implicit_lanes.h
+    wide='-DNEVH__SIDE_BY_SIDE -DNEVH__WIDE'
+    for forms in '' "$wide" "$wide -DNEVH__GROUPS" -DNEVH__LOOPS; do
+        compiles $compiler DRIVER native/steps/block_driver.h $forms
+    done
+    compiles $compiler DRIVER native/steps/long_driver.h $wide -DNEVH__LOOPS
+    compiles $compiler DRIVER native/steps/compiled_needs.h \
+        -DNEVH__SIDE_BY_SIDE -DNEVH__STAGES
+    for forms in -DNEVH__KEEPS '-DNEVH__KEEPS -DNEVH__LOOPS -DNEVH__FINITE' \
+        '-DNEVH__KEEPS -DNEVH__SUMS -DNEVH__STAGES'; do
+        compiles $compiler DRIVER native/steps/block_driver.h \
+            -DNEVH__FOR_READERS $forms
+    done
 done
 
 # Each header is tried, and a wrong one is found.
