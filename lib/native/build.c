@@ -17,7 +17,8 @@
 #include <time.h>
 #include <unistd.h>
 
-/* What changes no result, and takes back what words of CC may change, and the vectors that the library itself takes. */
+/* Flags that change no result and undo what words of CC may change, and the vectors
+   that the library itself takes. */
 static const char *const most[] = {"-O2",
                                    "-fno-fast-math",
                                    "-fno-unsafe-math-optimizations",
@@ -141,8 +142,9 @@ static void free_place(place *p) {
     free(p->cache);
 }
 
-/* Whether a compiler that took too long is to be left alone, so that a command that
-   has many texts waits for it once; who waits longest asks all the same. */
+/* True if a compiler that took too long is to be left alone, so that a command that
+   has many texts waits for it once; the caller that waits longest asks all the
+   same. */
 static bool was_late(const place *p, double seconds,
                      char why[NEVH__WHY_NATIVE]) {
     enum { APART = 600 };
@@ -167,7 +169,7 @@ static void note_late(const place *p) {
     close(file);
 }
 
-/* What a text is compiled from and to. */
+/* The source and the object of a compilation. */
 typedef struct {
     char *folder, *object, *source; /* NULL: no folder could be made */
 } files;
@@ -199,7 +201,7 @@ static void remove_files(files *f) {
     free(f->folder);
 }
 
-/* What was compiled is kept once it is known to have steps. */
+/* A compiled library is kept once it is known to have steps. */
 static void *open_compiled(const nevh__compiling *run, const files *f,
                            const place *p, char why[NEVH__WHY_NATIVE]) {
     if (run->output.late)
@@ -214,7 +216,7 @@ static void *open_compiled(const nevh__compiling *run, const files *f,
     return library;
 }
 
-/* Of the cache. */
+/* The library in the cache. */
 static void *open_kept(const place *p, char why[NEVH__WHY_NATIVE]) {
     return p->kept && nevh__cache_is_whole(p->kept) ? open_library(p->kept, why)
                                                     : NULL;

@@ -36,8 +36,8 @@ static void make_folders(char *path) {
     mkdir(path, 0700);
 }
 
-/* Whether others may put another folder in the place of one on the way.  Where the
-   sticky bit is set they may not. */
+/* True if others may put another folder in the place of one on the way; the sticky
+   bit prevents it. */
 static bool may_be_replaced(const char *folder) {
     char *path = nevh__text("%s", folder);
     bool open = !path;
@@ -89,7 +89,7 @@ static uint64_t digest(const char *bytes, size_t count) {
     return sum;
 }
 
-/* What is loaded must be this user's, and written by nobody else. */
+/* A file that is loaded must be this user's, and written by nobody else. */
 static bool is_own(const char *path) {
     struct stat file;
     return lstat(path, &file) == 0 && S_ISREG(file.st_mode) &&
@@ -130,7 +130,7 @@ bool nevh__cache_is_whole(const char *path) {
     return whole;
 }
 
-/* What a program that was killed left. */
+/* Removes files that a killed program left. */
 static void remove_old(const char *folder, const char *name, time_t made) {
     enum { OLD = 3600 };
     char *path = NULL;

@@ -98,8 +98,8 @@ static void free_environment(char **all) {
     free(all);
 }
 
-/* What the shell that starts a compiler does: its arguments are the folder and the
-   command, and 3 is the pipe that tells that nobody waits for it any more. */
+/* The shell script that starts a compiler: its arguments are the folder and the
+   command, and 3 is the pipe that closes when nobody waits any more. */
 static const char watch[] =
     "folder=$1; shift\n"
     "(trap '' HUP INT QUIT TERM; exec >/dev/null 2>&1; read none <&3\n"
@@ -169,7 +169,7 @@ static void hear(nevh__compiling *c) {
     }
 }
 
-/* What a compiler has started, and left, may hold its pipe for ever. */
+/* A process that a compiler has started, and left, may hold its pipe for ever. */
 static bool has_ended(const nevh__compiling *c) {
     siginfo_t found = {.si_pid = 0};
     int wrong =

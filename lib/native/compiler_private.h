@@ -23,9 +23,9 @@ typedef struct {
    before  out: the mask that was */
 void nevh__signals_hold(sigset_t *before);
 void nevh__signals_release(const sigset_t *before);
-/* What to call: CC of the environment, which is the name of a file or words apart by
+/* The command: CC of the environment, which is the name of a file or words apart by
    blanks, with quotes as a shell has them; else the first of cc, gcc and clang that
-   there is.  Ended by NULL, and to be freed in one piece.  NULL: memory is out. */
+   exists. Ended by NULL, and to be freed in one piece.  NULL: memory is out. */
 char **nevh__compiler_words(void);
 /* The file that a command is; to be freed.  NULL: there is none. */
 char *nevh__command_find(const char *name);

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What means something else where formulas stand, other than names that begin
-   with one or two letters and a digit. */
+/* Words that have another meaning among formulas, other than names that begin with
+   one or two letters and a digit. */
 static const char *const words[] = {
     "t",        "q",        "p",        "y",      "slope",      "bad",
     "h",        "sum",      "lost",     "most",   "noise",      "scale",
@@ -68,7 +68,7 @@ static int by_name(const void *a, const void *b) {
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-/* Of those that are alike one is used. */
+/* Keeps one of equal names. */
 static bool drop_twins(size_t count, char names[][NEVH__NAME]) {
     char **sorted = nevh__array(count, sizeof *sorted);
     if (!sorted)

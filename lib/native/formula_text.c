@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where the numbers of a tape are: which operation wrote what a slot holds. */
+/* Places of a tape's numbers: the operation that wrote what a slot holds. */
 typedef struct nevh__reading {
     uint32_t *a, *b;  /* by operation: which wrote its operand */
     uint32_t *holder; /* by slot, for now */
@@ -277,7 +277,8 @@ static double size_of(const nevh__tape *tape, nevh__tape_operand o) {
     return o.kind == NEVH__NUMBER ? fabs(tape->numbers[o.at]) : NAN;
 }
 
-/* What is finite where the value is: that without a sign and factors up to 1. */
+/* A number that is finite where the value is: the value without a sign and factors
+   up to 1. */
 static void finite_with(nevh__writer *w, const nevh__formula_text *f,
                         const reading *r, char value[NEVH__NAME]) {
     const nevh__tape *tape = f->tape;
@@ -326,7 +327,7 @@ bool nevh__write_gradient(nevh__writer *w, nevh__formula_text *f,
     return fine;
 }
 
-/* Whether an operand changes with the variable that is moved. */
+/* True if an operand changes with the variable that is moved. */
 static bool moves(const reading *r, nevh__tape_operand o, uint32_t from,
                   bool cosine, nevh__variable by, size_t k) {
     if (o.kind == NEVH__SLOT)

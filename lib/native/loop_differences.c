@@ -28,7 +28,7 @@ static double step_of(const nevh__term_loop *x, size_t instance, size_t k) {
     return x->s->term->delta[instance * x->s->term->nv + k];
 }
 
-/* Whether all instances have one step. */
+/* True if all instances have one step. */
 static bool is_common(const nevh__term_loop *x, size_t k) {
     for (size_t i = 1; i < x->s->term->term->decl.count; i++)
         if (step_of(x, i, k) != step_of(x, 0, k))
@@ -36,7 +36,7 @@ static bool is_common(const nevh__term_loop *x, size_t k) {
     return true;
 }
 
-/* What the step of variable k is called. */
+/* Names the step of variable k. */
 static void name_step(const nevh__term_loop *x, size_t k,
                       char name[NEVH__NAME]) {
     nevh__writer *w = x->s->w;

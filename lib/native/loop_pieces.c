@@ -131,7 +131,7 @@ void nevh__loop_clear(nevh__term_loop *x) {
     free(x->vars);
 }
 
-/* Of one term. */
+/* The reach of one term. */
 static size_t reach_of(const nevh__slope_text *s) {
     size_t reach = 0;
     nevh__term_loop x;

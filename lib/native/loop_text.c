@@ -43,8 +43,8 @@ static const char helpers[] =
     "    for (; i + 8 <= count; i += 8)\n"
     "        *(wide *)(to + i) += *(const wide *)(x + i);\n"
     "    for (; i < count; i++) to[i] += x[i];\n}\n"
-    /* What a row gives to variables from `at` on, but for those that are not
-       asked for. */
+    /* Derivatives that a row gives to variables from `at` on, but for those that
+       are not asked for. */
     "INLINE void add_some(double *slope, size at, const double *x, size count, "
     "size first, size past) {\n"
     "    size skip = at < first ? first - at : 0;\n"

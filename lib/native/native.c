@@ -97,8 +97,8 @@ static bool fill_tao(nevh__native *x, const nevh_work *w) {
     return x->weights;
 }
 
-/* Where an orbit goes on; the length of a step follows from slopes ahead and
-   behind, or from that at its beginning. */
+/* Kicks and drifts of a step after an orbit's first; its length follows from slopes
+   ahead and behind, or from that at its beginning. */
 static bool fill_adaptive_verlet(nevh__native *x, const nevh_work *w) {
     const nevh__step_control *table = w->integrator->table;
     x->own_time = true;
@@ -108,7 +108,7 @@ static bool fill_adaptive_verlet(nevh__native *x, const nevh_work *w) {
     return x->times;
 }
 
-/* Of one stage. */
+/* Kicks and drifts of one stage. */
 static bool fill_stages(nevh__native *x, const nevh_work *w) {
     x->stages = (size_t)w->integrator->stages;
     x->kicks = x->drifts = 1;
@@ -176,7 +176,7 @@ static bool has_loops(const nevh_work *w) {
            nevh__has_loops(w->field);
 }
 
-/* What is in the way; NULL: nothing that is known yet. */
+/* The reason why nothing is compiled; NULL: none is known yet. */
 static const char *obstacle(const nevh_work *w) {
     return of_series(w)               ? NULL
            : family_of(w) == FAMILIES ? NEVH__ONLY_FAMILIES
@@ -201,7 +201,7 @@ bool nevh__native_write(nevh__writer *text, nevh_work *w) {
     return !text->refusal && families[family_of(w)].write(text, w);
 }
 
-/* What steps are handed, but for numbers; false when memory is out. */
+/* Arguments of steps, but for numbers; false when memory is out. */
 static bool fill(nevh__native *x, const nevh_work *w) {
     size_t terms = w->field->n_terms;
     if (of_series(w))
@@ -244,8 +244,8 @@ static double seconds_foreseen(const nevh_work *w) {
     return w->options->steps_foreseen * gradients_of(w) * each;
 }
 
-/* What steps foreseen take from the tape in all uses of what is compiled, less
-   the time to compile a text. */
+/* Seconds that all uses of the compiled text save of the foreseen steps' time, less
+   those of compiling it. */
 static double saved_by(const nevh_work *w, size_t characters) {
     const char *cache = w->options->native_cache;
     double times = cache && !*cache ? 1 : uses;
@@ -266,7 +266,7 @@ double nevh__native_saves(nevh_work *w) {
     return seconds;
 }
 
-/* Whether compiling a text takes less. */
+/* True if compiling a text takes less time than it saves. */
 static bool compiling_pays(const nevh_work *w, size_t characters) {
     return w->options->native == NEVH_NATIVE_ALWAYS ||
            saved_by(w, characters) > 0;

@@ -27,7 +27,7 @@ typedef size_t (*nevh__compiled_steps)(const double numbers[], double weights[],
                                        double memory[], size_t counted[3],
                                        double room[]);
 
-/* Those that are taken, which appear once a compiler in the background is done. */
+/* Steps in use, which appear once a compiler in the background is done. */
 typedef _Atomic(nevh__compiled_steps) nevh__steps_at_work;
 typedef struct nevh__background nevh__background;
 
@@ -84,7 +84,7 @@ bool nevh__write_adaptive_verlet(nevh__writer *, nevh_work *);
    to; ahead: the last stage's slope.  For readers both are without N. */
 void nevh__write_adaptive(nevh__writer *, const nevh_work *,
                           const nevh__adaptive_rule *);
-/* Whether steps adapt to a tolerance. */
+/* True if steps adapt to a tolerance. */
 static inline bool nevh__adapts(const nevh_work *w) {
     return w->integrator->adaptive && w->options->tolerance > 0;
 }
@@ -104,7 +104,7 @@ void nevh__names_shorten(char *text);
 /* All but functions and values that nothing else asks for.  Cuts the text into
    lines; false: memory is out. */
 bool nevh__write_used(nevh__writer *, char *text);
-/* Whether a text has such a call, "name(". */
+/* True if a text has such a call, "name(". */
 bool nevh__text_calls(const char *text, const char *call);
 
 /* Makes w->native if that is wanted, possible and worth while; `why`: else what
@@ -114,15 +114,15 @@ void nevh__native_plan(nevh_work *, char why[NEVH__WHY_NATIVE]);
    is in the cache.  why: out, of each: what is in the way, or "". */
 void nevh__native_prepare(nevh_work *const[], size_t count,
                           char (*why)[NEVH__WHY_NATIVE]);
-/* Whether there is one, or a compiler is at work, and the steps foreseen make up for
-   compiling it. */
+/* True if there is one, or a compiler is at work, and the steps foreseen make up
+   for compiling it. */
 bool nevh__native_pays(const nevh_work *);
 /* Waits for a compiler at work.
    returns  whether steps are native; NULL is allowed */
 bool nevh__native_await(nevh__native *);
 /* nevh_stepper_native_saves, of the steps foreseen. */
 double nevh__native_saves(nevh_work *);
-/* Whether steps of orbits that have constants of their own can be compiled. */
+/* True if steps of orbits that have constants of their own can be compiled. */
 bool nevh__native_by_lane(const nevh_work *);
 void nevh__native_lane_take(nevh_work *, size_t lane); /* its numbers anew */
 void nevh__native_free(nevh__native *);                /* NULL is allowed */
@@ -157,7 +157,7 @@ void *nevh__native_load(const char *source, const char *cache, double seconds,
 nevh__background *nevh__background_begin(const char *source, const char *cache,
                                          double seconds,
                                          nevh__steps_at_work *steps);
-/* Whether it has loaded steps, or failed. */
+/* True once it has loaded steps, or failed. */
 bool nevh__background_is_done(nevh__background *);
 /* Waits for it.
    wanted   else other programs are not waited for, and a compiler only if it is at
@@ -178,7 +178,7 @@ size_t nevh__native_build(char *const sources[], size_t count,
 /* The folder of compiled steps, which is made; to be freed.  NULL: it cannot
    be made, is not a folder, or others may write to it. */
 char *nevh__cache_folder(const char *given, char why[NEVH__WHY_NATIVE]);
-/* Whether a file is as nevh__cache_store wrote it. */
+/* True if a file is as nevh__cache_store wrote it. */
 bool nevh__cache_is_whole(const char *path);
 /* Copies a file to the cache under its name there; older ones go where it is
    full.  Returns whether it is there. */

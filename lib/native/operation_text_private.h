@@ -5,8 +5,8 @@
 
 #include "native/writer_private.h"
 
-/* What an operation is called with: the names of its arguments, of its result
-   and of the result's adjoint, which values do without. */
+/* Names that an operation is called with: of its arguments, of its result and of
+   the result's adjoint, which values do without. */
 typedef struct {
     const char *a, *b, *y, *g;
     const nevh__lane_words *lanes; /* as in nevh__formula_text */
@@ -20,9 +20,9 @@ typedef enum {
     NEVH__OPERATION_PARTS
 } nevh__operation_part;
 
-/* Whether its value is that of a function of vectors, which is called. */
+/* True if its value is that of a function of vectors, which is called. */
 bool nevh__operation_calls(unsigned operation);
-/* How large a result can be where its arguments are finite, and below a and b. */
+/* The largest size of a result where the arguments are finite, and below a and b. */
 double nevh__operation_bound(unsigned operation, double a, double b);
 /* The expression alone. */
 void nevh__write_expression(nevh__writer *, unsigned operation,

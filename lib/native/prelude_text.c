@@ -117,9 +117,9 @@ static void write_lane(nevh__writer *w, const char *f) {
                        (const char *const[]){name, f});
 }
 
-/* What stands side by side by vectors of fewer lanes: $1 the type, $2 what its
-   functions' names begin with, $3 the function, $4 $5 a second argument, $6 how
-   many vectors, $7 the vectors' function, $8 their second argument. */
+/* A function of numbers side by side by vectors of fewer lanes: $1 the type, $2
+   what its functions' names begin with, $3 the function, $4 $5 a second argument,
+   $6 how many vectors, $7 the vectors' function, $8 their second argument. */
 static const char by_parts[] =
     "INLINE $1 $2$3($1 x$4) { union { $1 all; vector part[$6]; } u = {x}$5; for "
     "(int i = 0; i < $6; i++) u.part[i] = $7(u.part[i]$8); return u.all; }\n";

@@ -25,8 +25,8 @@ static const struct {
      "    double rest = fmod(x, y);\n"
      "    return rest != 0 && (rest < 0) != (y < 0) ? rest + y : rest;\n}\n"}};
 
-/* What steps lead from T0 to T_END; where their time is not their own, the last
-   one is shorter or h fits. */
+/* Steps from T0 to T_END; where steps choose their own time, the last one is
+   shortened, else h fits or a shorter step follows. */
 static const char run_of_own_time[] =
     "/* The run. */\n"
     "static const double T0 = $1, T_END = $2, STEP = $3;\n\n"
@@ -55,7 +55,7 @@ static const char steps_and_rest[] =
     "    *t = taken < STEPS ? T0 + (double)(taken + 1) * STEP : T_END;\n"
     "    return true;\n}\n\n";
 
-/* What of nevh's row the steps alone make: errors of the energy. */
+/* Columns of nevh's row that the steps alone make: errors of the energy. */
 static const char energy_row[] =
     "/* The shortest of 15 to 17 digits that is the number again. */\n"
     "static void print_number(double x) {\n"

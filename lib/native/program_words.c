@@ -10,7 +10,7 @@ static bool is_word(char c) {
     return isalnum((unsigned char)c) || c == '_';
 }
 
-/* Whether a line that is no comment has a word. */
+/* True if a line that is no comment has a word. */
 static bool has_word(const char *line, const char *word, size_t length) {
     if (strncmp(line + strspn(line, " "), "/*", 2) == 0)
         return false;
@@ -114,8 +114,8 @@ static char **split_lines(char *text, size_t *count) {
     return all;
 }
 
-/* Whether "    double NAME = ...;" is asked for by a line that is left, up to
-   the function's end. */
+/* True if "    double NAME = ...;" is used by a line that is left, up to the
+   function's end. */
 static bool is_of_use(char **lines, size_t i, size_t count) {
     static const char begin[] = "double ";
     const char *name = lines[i] ? lines[i] + strspn(lines[i], " ") : "";
@@ -136,8 +136,8 @@ static bool is_of_use(char **lines, size_t i, size_t count) {
     return false;
 }
 
-/* Where a function ends that begins at line i, or its declaration alone; i: none
-   does. */
+/* The end of a function that begins at line i, or of its declaration alone; i: none
+   begins there. */
 static size_t end_of_function(char **lines, size_t i, size_t count,
                               bool *declared_only) {
     size_t end = i;

@@ -31,8 +31,8 @@ void nevh__slope_values(const nevh_field *f, bool kick, uint64_t values[]) {
                          : 0;
 }
 
-/* How long the text of one half is, in operations; INFINITY: there is none, and
-   why. */
+/* The length of one half's text, in operations; INFINITY: there is none, and
+   w->refusal has the reason. */
 static double half_operations(nevh__writer *w, const nevh_field *f, bool kick) {
     bool wide = nevh__side_by_side(w, f);
     double operations = 0;

@@ -21,7 +21,7 @@ static inline size_t nevh__end_of(const nevh__slope_text *s) {
     return s->kick ? s->term->nq : s->term->nv;
 }
 
-/* Whether the term's formula depends on a variable. */
+/* True if the term's formula depends on a variable. */
 static inline bool nevh__slope_reads(const nevh__slope_text *s, size_t k) {
     const nevh__tape *tape = s->term->term->decl.params;
     size_t nq = s->term->nq;
@@ -29,7 +29,7 @@ static inline bool nevh__slope_reads(const nevh__slope_text *s, size_t k) {
                   : nevh__tape_reads(tape, NEVH__P, k - nq);
 }
 
-/* How instances find what they read. */
+/* Places of what instances read. */
 typedef struct {
     const nevh__slope_text *s;
     unsigned id;
@@ -51,7 +51,7 @@ static inline size_t nevh__loop_index(const nevh__term_loop *x, size_t instance,
 /* The least and the largest index of the half's variables of one instance. */
 void nevh__loop_bases(const nevh__term_loop *, size_t instance, size_t *least,
                       size_t *most);
-/* Whether instance i reads what is i further on than what the first reads. */
+/* True if instance i reads what is i further on than what the first reads. */
 bool nevh__loop_is_local(const nevh__term_loop *);
 /* Appends to the numbers, as pairs of 32 bits: of each piece its first instance
    and what that reads; or what instances read, variable after variable. */
@@ -60,7 +60,7 @@ void nevh__loop_pack(const nevh__term_loop *);
 static inline bool nevh__is_tape(const nevh_term *is) {
     return is->gradient == nevh__tape_block_gradient;
 }
-/* What variables are called: in vectors of instances, and for readers. */
+/* Names of variables: in vectors of instances, and for readers. */
 void nevh__loop_name(nevh__writer *, const nevh__formula_text *, nevh__variable,
                      size_t k, char name[NEVH__NAME]);
 /* The loop's body where it takes differences: the slopes of eight instances, or
@@ -75,27 +75,27 @@ void nevh__write_row(const nevh__term_loop *, size_t k, const char *name);
 /* Columns of differences' steps where instances have their own, for readers. */
 void nevh__write_steps(const nevh__term_loop *);
 
-/* Whether a term has a part in a half. */
+/* True if a term has a part in a half. */
 static inline bool nevh__is_wanted(const nevh__planned *term, bool kick) {
     return kick ? term->nq : term->np;
 }
-/* Whether points of differences stand in a vector's lanes. */
+/* True if points of differences stand in a vector's lanes. */
 static inline bool nevh__side_by_side(const nevh__writer *w,
                                       const nevh_field *f) {
     return !f->portable && !w->readable && !nevh__has_lanes(w);
 }
-/* Whether the text of slopes that are called so often is short enough; else
+/* True if the text of slopes that are called so often is short enough; else sets
    w->refusal. */
 bool nevh__slopes_fit(nevh__writer *, const nevh_field *, size_t calls);
-/* How many vectors of orbits a step of so many slopes takes at once, 1 or 2: one
-   waits while the other is at it. */
+/* Vectors of orbits that a step of so many slopes takes at once, 1 or 2: one waits
+   while the other is evaluated. */
 size_t nevh__vectors_at_once(const nevh__writer *, const nevh_field *,
                              size_t slopes);
-/* Whether a term is a loop where w->loops is set. */
+/* True if a term is a loop where w->loops is set. */
 bool nevh__is_loop(const nevh__planned *);
 /* "if (...) {": whether any of a term's slopes are asked for. */
 void nevh__write_asked(const nevh__slope_text *);
-/* What loops need before them. */
+/* Writes what loops need before them. */
 void nevh__write_loop_helpers(nevh__writer *);
 /* A loop that adds the term's derivatives to slope[], from `first` to `past`. */
 bool nevh__write_loop(const nevh__slope_text *);

@@ -11,7 +11,7 @@
 
 enum { LANES = 8 };
 
-/* What is added to one variable's derivative. */
+/* A summand of one variable's derivative. */
 typedef struct {
     size_t target;
     char name[NEVH__NAME];

@@ -177,7 +177,7 @@ static const char *truth(bool x) {
     return x ? "true" : "false";
 }
 
-/* Whether a group after the first has no kick, or no drift. */
+/* True if a group after the first has no kick, or no drift. */
 static bool lacks(const grouping *g, bool kick) {
     bool single = (g->count - g->first) % 2,
          last_kicks = g->kicks_first == (g->count % 2 == 1);

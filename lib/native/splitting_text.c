@@ -58,9 +58,9 @@ static const char step[] =
     "    NEVH__EACH(k, 1, 2 * DOF) bad += point[k] - point[k];\n"
     "    return bad;\n}\n";
 
-/* Of states that are too long for the caches all operations are done on one part
-   after another.  A part of a slope is taken once all points that it reads are
-   there, and points are moved once all slopes have been taken that read them:
+/* States that are too long for the caches are taken part after part, all operations
+   on one before the next.  A part of a slope is taken once all points that it reads
+   are there, and points are moved once all slopes have been taken that read them:
    each operation lags behind the one before. */
 static const char slope_of_part[] =
     "NEVH__INLINE int nevh__splitting_slope(const nevh__splitting_step *x, int "
@@ -74,8 +74,8 @@ static const char slope_of_part[] =
     "        *o->bad += (kick ? kick_slope : drift_slope)(\n"
     "            o->N, t, q, p, slope, 8 * o->first, 8 * (o->first + o->size));\n"
     "    return 0;\n}\n\n";
-/* What a step has but for the state is there for the parts that are in work, and
-   moved to the front where the room for it ends. */
+/* A step's arrays but for the state hold the parts that are in work, and are moved
+   to the front where their space ends. */
 static const char step_of_parts[] =
     "    wide bad = {0};\n"
     "    nevh__splitting_scheme scheme = {operations, W, T, $1, $2};\n"
@@ -174,7 +174,7 @@ static void write_tables(nevh__writer *w, const nevh_splitting *table) {
     free(times);
 }
 
-/* By how many parts each operation lags. */
+/* Writes by how many parts each operation lags. */
 static void write_lags(nevh__writer *w, nevh_work *work, bool kicks_first,
                        bool keeps, size_t count) {
     size_t kick = nevh__slope_reach(w, work->field, true);

@@ -9,7 +9,7 @@ static bool begins(const char *line, const char *word) {
     return strncmp(line, word, strlen(word)) == 0;
 }
 
-/* Whether the condition of a line "#ifdef NAME" or "#ifndef NAME" holds. */
+/* True if the condition of a line "#ifdef NAME" or "#ifndef NAME" holds. */
 static bool holds(const nevh__writer *w, const char *line) {
     static const char readers[] = "NEVH__FOR_READERS";
     static const char shape[] = "NEVH__ONE_SHAPE";

@@ -16,7 +16,7 @@ static void add_counts(nevh_work *w, const nevh__native *x, size_t kicks,
             kicks * x->kick_values[i] + drifts * x->drift_values[i];
 }
 
-/* Those of so many steps, as the kernel counts them. */
+/* Counts the evaluations of so many steps, as the kernel does. */
 static void count(nevh_work *w, const nevh__native *x, size_t steps,
                   bool kept) {
     size_t saved = x->keeps ? steps - !kept : 0;
@@ -27,7 +27,7 @@ static void count(nevh_work *w, const nevh__native *x, size_t steps,
     add_counts(w, x, kicks * w->width, drifts * w->width);
 }
 
-/* How many lanes have the slope that the step before left. */
+/* The number of lanes that have the slope that the step before left. */
 static size_t count_kept(const nevh_work *w) {
     const double *flags = w->memory + w->native->flags_at * w->size;
     size_t kept = 0;

@@ -279,7 +279,7 @@ static void write_advance(author *a, const char *k) {
                     i);
 }
 
-/* What edges of domains are looked for in. */
+/* Writes the series in which edges of domains are searched for. */
 static void write_watched(const author *a, const char *k) {
     const nevh__recurrence *r = a->r;
     char x[NEVH__NAME];

@@ -23,12 +23,12 @@ static size_t least_of(const nevh__term_loop *x) {
     return least;
 }
 
-/* How far on variable k is. */
+/* The offset of variable k. */
 static size_t shift_of(const nevh__term_loop *x, size_t k) {
     return nevh__loop_index(x, 0, k) - least_of(x);
 }
 
-/* Whether all instances of differences have one step. */
+/* True if all instances of differences have one step. */
 static bool has_common_steps(const nevh__planned *term) {
     for (size_t i = 0; i < term->term->decl.count * term->nv; i++)
         if (term->delta[i] != term->delta[i % term->nv])
@@ -61,8 +61,8 @@ static void mark(nevh__vectors *v, size_t variable) {
     v->special[variable / LANES] = true;
 }
 
-/* Whether what a vector's variables are given by a term comes from different
-   blocks of the tape in another order. */
+/* True if a vector's variables get contributions of a term from different blocks of
+   the tape in another order. */
 static bool order_changes(const nevh__term_loop *x, size_t variable) {
     bool falls = true, same = true;
     for (size_t v = 1; v < x->n_vars; v++) {

@@ -14,12 +14,12 @@ typedef struct {
     size_t before; /* vectors that are kept for the next one */
 } nevh__vectors;
 
-/* Whether vectors can be taken, and few of them are special; to be cleared in
-   all cases. */
+/* True if vectors can be taken, and few of them are special; to be cleared in all
+   cases. */
 bool nevh__vectors_init(nevh__vectors *, nevh__writer *, nevh_field *,
                         bool kick);
 void nevh__vectors_clear(nevh__vectors *);
-/* What their functions need before them. */
+/* Writes what their functions need before them. */
 void nevh__write_vector_helpers(nevh__writer *);
 /* After kick_slope and drift_slope, functions
        wide kick_vector(N, t, y, k, before, bad)

@@ -63,9 +63,9 @@ void nevh__write(nevh__writer *, const char *format, ...)
 void nevh__write_filled(nevh__writer *, const char *text,
                         const char *const words[]);
 void nevh__writer_free(nevh__writer *);
-/* What a number is called. */
+/* Names a number. */
 void nevh__write_number(nevh__writer *, double, char name[NEVH__NAME]);
-/* What those of a vector of lanes are called. */
+/* Names the numbers of a vector of lanes. */
 void nevh__write_own(nevh__writer *, const double row[], double times,
                      char name[NEVH__NAME]);
 /* A number as C has it. */
@@ -92,8 +92,8 @@ void nevh__write_lines(nevh__writer *, const char *const lines[]);
 /* Variables get names in C like those of the coordinates, n; false when memory
    is out. */
 bool nevh__writer_name(nevh__writer *, size_t n, const char *const names[]);
-/* What q[k] or p[k] is called, and declarations of the names that terms have
-   but for loops. */
+/* Names q[k] or p[k]; writes declarations of the names that terms have but for
+   loops. */
 void nevh__state_name(const nevh__writer *, bool momentum, size_t k,
                       char name[NEVH__NAME]);
 void nevh__write_state_names(nevh__writer *, const nevh_field *);
@@ -102,7 +102,7 @@ void nevh__write_state_names(nevh__writer *, const nevh_field *);
 void nevh__write_word(nevh__writer *, const char *word);
 /* A comment: which term follows. */
 void nevh__write_effect(nevh__writer *, const nevh_term *);
-/* Whether anything stands side by side. */
+/* True if anything stands side by side. */
 static inline bool nevh__has_lanes(const nevh__writer *w) {
     return w->width > 1 || (w->stages && !w->readable);
 }
@@ -134,7 +134,7 @@ extern const char *const nevh__compiled_needs_text[];
 extern const char *const nevh__program_needs_text[];
 extern const char *const nevh__fraction_text[];
 
-/* How C text has numbers side by side. */
+/* The words of C text for numbers side by side. */
 typedef struct {
     const char *type;
     const char *all;  /* so many times one number */
@@ -148,7 +148,7 @@ typedef struct nevh__formula_text {
     const nevh__tape *tape;
     const nevh__lane_words *lanes; /* NULL: one point */
     bool scalar;                   /* functions of libm, not of vectors */
-    /* What a variable is called. */
+    /* Names a variable. */
     void (*variable)(nevh__writer *, const struct nevh__formula_text *,
                      nevh__variable, size_t k, char name[NEVH__NAME]);
     const void *data;
@@ -176,7 +176,7 @@ bool nevh__write_complex(nevh__writer *, nevh__formula_text *,
 void nevh__derivative_name(const nevh__formula_text *, nevh__variable, size_t k,
                            char name[NEVH__NAME]);
 
-/* What formulas need before them. */
+/* Writes what formulas need before them. */
 void nevh__write_prelude(nevh__writer *);
 
 /* After w->group was chosen: what kernels' texts need; finite: nevh__not_finite, sums: stage_sums.  DOF is the
@@ -210,7 +210,7 @@ void nevh__write_unkept(nevh__writer *);
 void nevh__write_driver(nevh__writer *, bool keeps);
 /* TABLE(b), the numbers of a vector of orbits; none is added later. */
 void nevh__write_table(nevh__writer *);
-/* That function by the text's own function advance. */
+/* Writes that function by the text's own function advance. */
 void nevh__write_entry(nevh__writer *);
 
 /* Functions kick_slope and drift_slope
@@ -222,9 +222,9 @@ void nevh__write_entry(nevh__writer *);
    8. */
 #define NEVH__ALL_SLOPES ", 0, 8 * DOF"
 bool nevh__write_slopes(nevh__writer *, nevh_field *, size_t calls);
-/* Whether terms have so many instances that they are loops. */
+/* True if terms have so many instances that they are loops. */
 bool nevh__has_loops(const nevh_field *);
-/* How far apart the variables are, at most, that an instance of a term reads;
+/* The distance of the variables, at most, that an instance of a term reads;
    SIZE_MAX: its instances do not follow one another through the state. */
 size_t nevh__slope_reach(nevh__writer *, nevh_field *, bool kick);
 /* A function worst_noise(N, t, y, scale, bad): what rounding in H adds to

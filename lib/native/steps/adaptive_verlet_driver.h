@@ -92,7 +92,7 @@ NEVH__INLINE bool take_step(NEVH__COMPILED(const double *N, ) double t,
     nevh__leap_take(&x, t, *length, Q, P);
 #ifdef NEVH__REVERSIBLE
 #ifndef NEVH__FOR_READERS
-    /* Where nothing moves, the kernel counts no slopes of a change of 0. */
+    /* The kernel counts no slopes of a change of 0 where nothing moves. */
     if (!(nevh__leap_size(&x) > 0))
         return false;
 #endif

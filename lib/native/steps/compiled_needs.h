@@ -25,7 +25,7 @@ typedef size size_t;
 #define NEVH__COMPILED(...) __VA_ARGS__
 
 #ifdef NEVH__WIDE
-/* What is not finite is found once for all blocks. */
+/* Numbers that are not finite are found once for all blocks. */
 typedef wide nevh__number, nevh__vector;
 INLINE wide nevh__roundoff(wide sum, wide a, wide b) {
     wide part = sum - a;
@@ -45,7 +45,7 @@ INLINE double nevh__roundoff(double sum, double a, double b) {
     return (a - (sum - part)) + (b - part);
 }
 #else
-/* Of the larger one of a and b what is lost follows in two operations instead
+/* The rounding error of the larger one of a and b follows in two operations instead
    of six, which all wait for one another; it is exact in both ways. */
 static __attribute__((noinline, cold)) double
 rare_roundoff(double sum, double a, double b) {

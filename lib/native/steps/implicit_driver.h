@@ -76,8 +76,7 @@ NEVH__INLINE const double *nevh__stage_inverse(const nevh__stage_step *x) {
 #endif
 
 #ifdef NEVH__DIFFERENCES
-/* What noise of differences makes of a step, in units of scale; taken once a
-   step. */
+/* The noise of differences in a step, in units of scale; taken once a step. */
 NEVH__INLINE double nevh__stage_noise_level(const nevh__stage_judged *x) {
     const struct nevh__stage_judge_owner *o = x->owner;
     if (*o->level < 0) {

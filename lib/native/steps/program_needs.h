@@ -6,7 +6,7 @@
 /* Element by element. */
 #define NEVH__EACH(i, lanes, size) for (size_t i = 0; i < (size); i += (lanes))
 
-/* What rounding has lost of a + b. */
+/* The rounding error of sum = a + b. */
 static double nevh__roundoff(double sum, double a, double b) {
     double part = sum - a;
     return (a - (sum - part)) + (b - part);
