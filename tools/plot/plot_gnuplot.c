@@ -14,8 +14,8 @@
 
 extern char **environ;
 
-static int start(char *const arguments[], int in, int out, int messages,
-                 pid_t *child) {
+static int spawn(char *const arguments[], int in, int out, int messages,
+                 const posix_spawnattr_t *how, pid_t *child) {
     posix_spawn_file_actions_t files;
     int wrong = posix_spawn_file_actions_init(&files);
     if (wrong)
@@ -23,8 +23,28 @@ static int start(char *const arguments[], int in, int out, int messages,
     posix_spawn_file_actions_adddup2(&files, in, STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&files, out, STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&files, messages, STDERR_FILENO);
-    wrong = posix_spawnp(child, arguments[0], &files, NULL, arguments, environ);
+    wrong = posix_spawnp(child, arguments[0], &files, how, arguments, environ);
     posix_spawn_file_actions_destroy(&files);
+    return wrong;
+}
+
+/* A signal waits until the child is one that ends with this program. */
+static int start(char *const arguments[], int in, int out, int messages,
+                 pid_t *child) {
+    posix_spawnattr_t how;
+    sigset_t all, before;
+    int wrong = posix_spawnattr_init(&how);
+    if (wrong)
+        return wrong;
+    sigfillset(&all);
+    sigprocmask(SIG_BLOCK, &all, &before);
+    posix_spawnattr_setsigmask(&how, &before);
+    posix_spawnattr_setflags(&how, POSIX_SPAWN_SETSIGMASK);
+    wrong = spawn(arguments, in, out, messages, &how, child);
+    if (!wrong)
+        output_child(*child);
+    sigprocmask(SIG_SETMASK, &before, NULL);
+    posix_spawnattr_destroy(&how);
     return wrong;
 }
 
@@ -76,7 +96,6 @@ static int run(char *const arguments[], FILE *in, FILE *out, FILE *messages) {
             "found (Debian has it as gnuplot-nox)");
     if (wrong)
         return tool_refuse("gnuplot cannot be run: %s", strerror(wrong));
-    output_child(child);
     int status = await(child);
     output_child(0);
     return status ? refuse_end(status, messages) : TOOL_OK;
