@@ -23,7 +23,7 @@ flags="-std=c11 -O1 -g -D_GNU_SOURCE -DNEVH_PORTABLE -I. -I$srcdir/include
 # Flags are lists.
 # shellcheck disable=SC2086
 compile() {
-    for file in "$srcdir"/lib/*/*.c lib/native/kernel_texts.c \
+    for file in "$srcdir"/lib/*/*.c "$srcdir"/lib/*/*/*.c lib/native/kernel_texts.c \
         "$srcdir"/integrators/*.c "$srcdir"/integrators/kernels/*.c; do
         name=$(basename "$(dirname "$file")")_$(basename "$file" .c)
         "$clang" $flags $sanitized -fsanitize=fuzzer-no-link \
