@@ -139,8 +139,8 @@ typedef bool (*nevh_chunk_fn)(void *data, uint64_t *first, uint64_t *count);
 NEVH_API int nevh_sweep_run_chunks(nevh_sweep *, nevh_chunk_fn chunks,
                                    void *chunks_data, nevh_wanted_fn wanted,
                                    nevh_sweep_fn tell, void *data);
-/* No member begins any more: nevh_sweep_run finishes those under way and returns
-   NEVH_STOPPED.  May be called from a signal handler, from another thread or
+/* No member begins any more: nevh_sweep_run leaves those under way and returns
+   NEVH_STOPPED, soon.  May be called from a signal handler, from another thread or
    from `tell`; what was asked for before a run begins counts for that run. */
 NEVH_API void nevh_sweep_stop(nevh_sweep *);
 

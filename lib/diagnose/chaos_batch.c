@@ -159,6 +159,12 @@ static double steps_to_look(const nevh_chaos *c, size_t start) {
                 stride - fmod(done, stride));
 }
 
+/* Steps of some ten milliseconds, after which the run may have to end. */
+static double most_steps(const nevh_chaos *c) {
+    static const double most_numbers = 1 << 20;
+    return fmax(1, floor(most_numbers / (double)(rows_of(c) * c->width)));
+}
+
 /* Orbits. */
 
 static bool any_busy(const nevh_chaos *c, size_t *which) {
@@ -264,11 +270,12 @@ void nevh__chaos_batch_run(nevh_chaos *c, const nevh__chaos_jobs *jobs) {
             fill(c);
         if (!any_busy(c, &which))
             break;
-        double steps = INFINITY;
+        double steps = most_steps(c);
         for (size_t i = 0; i < c->starts; i++)
             if (x->orbits[i].busy)
                 steps = fmin(steps, steps_to_look(c, i));
         step_together(c, steps);
         asks = look_at_all(c) || ++looks % LOOKS_TOGETHER == 0;
+        x->stopped |= jobs->ending && *jobs->ending;
     }
 }

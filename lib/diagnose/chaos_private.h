@@ -5,6 +5,7 @@
 
 #include "system/system_private.h"
 #include <nevh/chaos.h>
+#include <signal.h>
 
 /* variational.c: the system whose coordinates are q and dq, and whose momenta
    are dp and p, in that order, with H = dq dH/dq + dp dH/dp. */
@@ -137,6 +138,7 @@ typedef struct {
     bool aligned;  /* SALI alone is: an orbit ends where it has fallen below
                      nevh__chaos_aligned */
     bool together; /* H reads t: orbits begin together */
+    const volatile sig_atomic_t *ending; /* not 0: orbits are left; or NULL */
 } nevh__chaos_jobs;
 /* Plans a batch; false if memory is out. */
 bool nevh__chaos_batch_plan(nevh_chaos *);

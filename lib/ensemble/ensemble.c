@@ -282,6 +282,12 @@ void nevh_ensemble_free(nevh_ensemble *e) {
     free(e);
 }
 
+void nevh__ensemble_heed(nevh_ensemble *e,
+                         const volatile sig_atomic_t *ending) {
+    if (e)
+        e->ending = ending;
+}
+
 int nevh_ensemble_status(const nevh_ensemble *e) {
     return e ? e->report.status : NEVH_ENOMEM;
 }

@@ -91,8 +91,13 @@ struct nevh_ensemble {
     nevh__refused_fn refused;
     void *data;
     bool stopped;
+    const volatile sig_atomic_t *ending; /* nevh__ensemble_heed; or NULL */
     nevh__report report;
 };
+
+static inline bool nevh__ensemble_ends(const nevh_ensemble *e) {
+    return e->ending && *e->ending;
+}
 
 /* own.c: a lane's own system.  False: it is refused. */
 bool nevh__own_take(nevh_ensemble *, size_t lane, uint64_t member);

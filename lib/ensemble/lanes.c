@@ -278,6 +278,7 @@ static void run_lanes(nevh_ensemble *e) {
             look_back(e, e->h);
         step_together(e);
         asks = (to_look(e) && look_and_end(e)) || ++steps % PATIENCE == 0;
+        e->stopped |= nevh__ensemble_ends(e);
     }
 }
 
@@ -298,7 +299,7 @@ static int observe(void *ensemble, size_t step, double t, const double q[],
     nevh__ensemble_look(e);
     if (!l->over)
         look_back(e, 0); /* the step from here is known when it is taken */
-    return l->over;
+    return l->over || nevh__ensemble_ends(e);
 }
 
 /* Sections observe after the records have begun. */
@@ -326,6 +327,9 @@ static void run_one(nevh_ensemble *e) {
     memcpy(p, e->p, e->n * sizeof *p);
     int status = nevh_run_until(s, e->is.t_start, e->is.dt, e->is.t_end, q, p,
                                 observers, 2);
+    e->stopped = status == NEVH_STOPPED && !e->lanes->over;
+    if (e->stopped)
+        return;
     if (status && status != NEVH_STOPPED && !e->lanes->report.status)
         nevh__ensemble_fail(e, 0, &s->report);
     nevh__ensemble_end(e, 0);

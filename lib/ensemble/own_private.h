@@ -4,6 +4,7 @@
 #define NEVH_OWN_PRIVATE_H
 
 #include <nevh/ensemble.h>
+#include <signal.h>
 
 /* The constants, options and system of one member, if systems differ only in the
    constants of their terms; see nevh__ensemble_vary. */
@@ -30,5 +31,8 @@ bool nevh__ensemble_vary(nevh_ensemble *, nevh__own_fn, nevh__refused_fn);
 bool nevh__ensemble_may_vary(const nevh_ensemble *);
 /* And by compiled steps, where it has these. */
 bool nevh__ensemble_may_vary_compiled(const nevh_ensemble *);
+
+/* Orbits under way are left, soon, once *ending is not 0. */
+void nevh__ensemble_heed(nevh_ensemble *, const volatile sig_atomic_t *ending);
 
 #endif

@@ -84,14 +84,14 @@ static void ask_for_chunk(nevh_sweep *s) {
 static bool take_chunk(nevh__worker *w, bool may_wait) {
     nevh_sweep *s = w->sweep;
     pthread_mutex_lock(&s->lock);
-    while (may_wait && s->waiting && !s->stopped && !s->draining &&
+    while (may_wait && s->waiting && !s->stopped && !s->ending &&
            s->next < s->end && s->next + NEVH__CHUNK > s->low + WINDOW)
         pthread_cond_wait(&s->moved, &s->lock);
-    if (s->chunks && s->next == s->end && !s->stopped && !s->draining)
+    if (s->chunks && s->next == s->end && !s->stopped && !s->ending)
         ask_for_chunk(s);
     bool room = !s->waiting || s->next + NEVH__CHUNK <= s->low + WINDOW;
     uint64_t from = s->next, to = from;
-    if (room && !s->stopped && !s->draining && from < s->end)
+    if (room && !s->stopped && !s->ending && from < s->end)
         to = s->end - from < NEVH__CHUNK ? s->end : from + NEVH__CHUNK;
     s->next = to;
     pthread_mutex_unlock(&s->lock);
@@ -119,7 +119,7 @@ static bool next(void *data, uint64_t *member, double q[], double p[]) {
     nevh__worker *w = data;
     nevh_sweep *s = w->sweep;
     for (;;) {
-        if (s->draining)
+        if (s->ending)
             return false;
         while (w->at == w->group_end)
             if (s->ensemble->parameters || !take_chunk(w, false))
@@ -166,7 +166,7 @@ bool nevh__sweep_variant(nevh_sweep *s, const double varied[], nevh__variant *x,
 }
 
 /* An ensemble of so many members of a variant; NULL after a message. */
-static nevh_ensemble *open(const nevh_sweep *s, const nevh__variant *x,
+static nevh_ensemble *open(nevh_sweep *s, const nevh__variant *x,
                            size_t members, nevh__report *report) {
     nevh_options o;
     double *room = nevh__array(2 * x->model->n, sizeof *room);
@@ -177,6 +177,7 @@ static nevh_ensemble *open(const nevh_sweep *s, const nevh__variant *x,
             is.width = 1;
         e = nevh_ensemble_new(x->model->system, &is);
     }
+    nevh__ensemble_heed(e, &s->ending);
     free(room);
     if (!e || nevh_ensemble_status(e))
         nevh__fail(report, nevh_ensemble_status(e), "%s",
@@ -216,7 +217,7 @@ static void share(nevh__worker *w) {
 static bool next_sharing(void *data, uint64_t *member, double q[], double p[]) {
     nevh__worker *w = data;
     size_t n = w->sweep->scene->model->n;
-    if (w->sweep->draining || w->shared_at == w->n_sharing)
+    if (w->sweep->ending || w->shared_at == w->n_sharing)
         return false;
     size_t at = w->sharing[w->shared_at++];
     *member = at;
@@ -269,7 +270,7 @@ static void run_group(nevh__worker *w, const double varied[], bool apart) {
         do
             nevh_ensemble_run(e, next, done, w);
         while (!w->sweep->ensemble->parameters && !w->sweep->stopped &&
-               !w->sweep->draining && take_chunk(w, true));
+               !w->sweep->ending && take_chunk(w, true));
     else if (report.status == NEVH_ENOMEM)
         out_of_memory(w->sweep);
     else
@@ -312,7 +313,7 @@ static void sort(nevh__worker *w) {
 
 /* Members that are left, each apart. */
 static void run_left(nevh__worker *w, const size_t left[], size_t count) {
-    for (size_t i = 0; i < count && !w->sweep->stopped && !w->sweep->draining;
+    for (size_t i = 0; i < count && !w->sweep->stopped && !w->sweep->ending;
          i++) {
         w->at = left[i];
         w->group_end = w->at + 1;
@@ -326,7 +327,7 @@ static void run_chunk_by_groups(nevh__worker *w) {
         varied_values(w, w->list[i],
                       w->varied + i * w->sweep->ensemble->n_varied);
     sort(w);
-    while (w->at < w->count && !w->sweep->stopped && !w->sweep->draining) {
+    while (w->at < w->count && !w->sweep->stopped && !w->sweep->ending) {
         size_t first = w->order[w->at];
         w->group_end = w->at + 1;
         while (w->group_end < w->count &&
@@ -427,7 +428,7 @@ static void close_window(nevh_sweep *s) {
 
 void nevh_sweep_stop(nevh_sweep *s) {
     if (s)
-        s->draining = 1;
+        s->ending = 1;
 }
 
 static int run(nevh_sweep *s, nevh_wanted_fn wanted, nevh_sweep_fn tell_fn,
@@ -455,9 +456,9 @@ static int run(nevh_sweep *s, nevh_wanted_fn wanted, nevh_sweep_fn tell_fn,
     close_window(s);
     if (!ready || s->failed)
         return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
-    bool drained = s->draining;
-    s->draining = 0;
-    return s->stopped || drained
+    bool ended = s->ending;
+    s->ending = 0;
+    return s->stopped || ended
                ? nevh__fail(&s->report, NEVH_STOPPED, "the sweep was to stop")
                : NEVH_OK;
 }

@@ -32,7 +32,7 @@ void nevh__lane_members_free(nevh__lane_members *l) {
 static bool next(void *data, uint64_t *member, double q[], double p[]) {
     nevh__worker *w = data;
     nevh_sweep *s = w->sweep;
-    while (!s->draining && w->lanes.queue_at < w->lanes.n_queue) {
+    while (!s->ending && w->lanes.queue_at < w->lanes.n_queue) {
         size_t at = w->lanes.queue[w->lanes.queue_at++], i = w->order[at];
         double *varied = w->varied + i * s->ensemble->n_varied;
         nevh__report report = {0};
@@ -117,6 +117,7 @@ void nevh__lane_members_open(nevh__worker *w) {
             w->sweep, &w->lanes.form.base, &o, w->lanes.plan_at);
         e = nevh_ensemble_new(w->lanes.form.system, &is);
     }
+    nevh__ensemble_heed(e, &w->sweep->ending);
     if (nevh__ensemble_vary(e, own_of, leave))
         w->lanes.ensemble = e;
     else

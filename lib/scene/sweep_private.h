@@ -55,7 +55,7 @@ struct nevh_sweep {
     uint64_t by_lane;     /* members whose lanes had constants of their own */
     nevh_chunk_fn chunks; /* where next and end come from; NULL: they stay */
     void *chunks_data;
-    volatile sig_atomic_t draining;
+    volatile sig_atomic_t ending;
 };
 
 /* variant.c.  varied: of a member; NULL: the scene as it is. */

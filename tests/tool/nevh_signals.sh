@@ -1,6 +1,7 @@
 #!/bin/sh
-# Signals leave no temporary file and no child behind; closed files, the order of operands,
-# titles that XML does not take and side files without an end harm nothing.
+# Signals end a command soon, and leave no temporary file and no child behind; closed
+# files, the order of operands, titles that XML does not take and side files without an
+# end harm nothing.
 
 . "${srcdir:-.}/tests/support/nevh_support.sh"
 
@@ -68,6 +69,75 @@ for name in TERM XCPU KILL; do
     test "$(find $XDG_CACHE_HOME -name '*.so.*' -type d)" = '' ||
         fails "leaves $(find $XDG_CACHE_HOME)"
 done
+
+# interrupts SIGNAL STATUS WHEN ARGUMENT...: the signal comes when WHEN succeeds.
+interrupts() {
+    signal=$1
+    expected=$2
+    when=$3
+    shift 3
+    command="$* ($signal)"
+    rm -f $work/pid $work/over $work/folder/*
+    { until test -s $work/pid && $when || test -e $work/over; do sleep 0.05; done
+      kill -s $signal "$(cat $work/pid)"; } 2>/dev/null &
+    ${limit:+timeout -s KILL 60} sh -c 'echo $$ >"$0" && exec "$@"' $work/pid "$nevh" "$@" \
+        >/dev/null 2>$work/err </dev/null
+    code=$?
+    touch $work/over
+    wait
+    test $code = $expected ||
+        { fails "exit status $code instead of $expected"; cat $work/err; }
+}
+leaves() { # FILE...
+    test "$(ls -A $work/folder | tr '\n' ' ')" = "$*${1:+ }" ||
+        fails "leaves $(ls -A $work/folder)"
+}
+begun() { test -s $work/folder/x.npy.txt; }
+# The last of the records has 24 bytes, the first of which says that it is done.
+last_done() { test "$(tail -c 24 $work/folder/x.npy | head -c 1 | tr '\001' y)" = y; }
+saved() { test -s $work/folder/x.csv.state; }
+opened() { test "$(ls -A $work/folder)" != ''; }
+int='INT 130'
+sh -c 'kill -s INT $$; sleep 0.1; exit 0' && int='TERM 143' # it is ignored here
+sweep="--t-end 1e12 --threads 2 -o $work/folder/x.npy"
+outcome='first(phi > 1)'
+for signal in "$int" 'TERM 143' 'XCPU 152' 'HUP 129'; do
+    interrupts $signal last_done sweep pendulum --vary 'phi = range(0.5, 2, 4)' \
+        --outcomes "$outcome" $sweep
+    leaves x.npy x.npy.txt
+    says 'stopped before 2 of 4 members: go on with --resume .*/x.npy$'
+done
+cp $work/folder/* $work
+again() { cp $work/x.npy* $work/folder && begun; }
+interrupts $int again sweep pendulum --vary 'phi = range(0.5, 2, 4)' \
+    --outcomes "$outcome" --t-end 1e12 --resume $work/x.npy
+says 'stopped before 2 of 4 members'
+# Displacements, parameters side by side and apart, one orbit after the other.
+for outcome in lyapunov energy_error; do
+    for varied in 'phi = range(1, 2, 4)' 'g = range(9, 10, 20)' 'g = range(9, 10, 2)'; do
+        interrupts $int begun sweep pendulum --vary "$varied" \
+            --outcomes "$outcome" --native never $sweep
+        says 'go on with --resume'
+    done
+done
+interrupts $int begun sweep pendulum --vary 'phi = range(1, 2, 4)' \
+    --outcomes energy_error --width 1 $sweep
+says 'go on with --resume'
+# Steps of a million substeps: the second signal does not wait for them.
+long='--integrators dop853 --tolerance 1e-12 --dt 1e7'
+interrupts $int begun sweep pendulum --vary 'phi = range(1, 2, 4)' \
+    --outcomes energy_error $sweep $long
+says 'go on with --resume'
+twice() { begun && sleep 0.2 && kill -s TERM "$(cat $work/pid)"; }
+interrupts HUP 129 twice sweep pendulum --vary 'phi = range(1, 2, 4)' \
+    --outcomes energy_error $sweep $long
+interrupts $int saved run pendulum --t-end 1e12 $long -o $work/folder/x.csv
+says 'to go on: --resume .*/x.csv$'
+leaves x.csv x.csv.state
+interrupts $int opened sweep pendulum --vary 'phi = range(0.5, 2, 4)' --t-end 1e12 \
+    -o $work/folder/x.csv
+leaves
+rm -f $work/x.npy*
 
 # Operands and options in any order, whatever the environment.
 exits 0 run pendulum --t-end 1 --samples 2

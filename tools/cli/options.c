@@ -109,7 +109,7 @@ const option_row option_rows[] = {
     {"retry", NULL, FLAG(retry), NULL,
      "with --resume: repeat the members that failed"},
     {"stop-after", "TIME", TAKEN("time", read_stop_after), NULL,
-     "sweep: after 50m, 2h or 90s finish the running members and end with "
+     "sweep: after 50m, 2h or 90s leave the rest to --resume and end with "
      "exit status 3; reference: refuse orbits that take longer (10m)"},
     {"task", "I/N", TAKEN("part", read_task), NULL,
      "run only part I of N, into FILE.I-of-N.npy"},

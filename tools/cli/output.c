@@ -46,9 +46,55 @@ static void remove_all(int number) {
         leave(number);
 }
 
+void signal_end(int number) {
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
 static void remove_and_end(int number) {
     remove_all(number);
-    raise(number);
+    signal_end(number);
+}
+
+/* What the first signal of these calls; NULL: it ends the program, as others do. */
+static void (*volatile to_note)(int);
+static const char *volatile if_late;
+static volatile sig_atomic_t noted;
+static const int of_note[] = {SIGHUP, SIGINT, SIGTERM, SIGXCPU};
+
+static void end_late(int number) {
+    (void)number;
+    ssize_t said = write(STDERR_FILENO, if_late, strlen(if_late));
+    (void)said;
+    remove_and_end(noted);
+}
+
+static void note_or_end(int number) {
+    void (*note)(int) = to_note;
+    to_note = NULL;
+    if (!note) {
+        remove_and_end(number);
+        return;
+    }
+    noted = number;
+    note(number);
+    signal_catch(SIGALRM, end_late);
+    alarm(1);
+}
+
+void signal_catch(int number, void (*note)(int)) {
+    struct sigaction found, caught = {.sa_handler = note};
+    if (sigaction(number, NULL, &found) == 0 && found.sa_handler != SIG_IGN)
+        sigaction(number, &caught, NULL);
+}
+
+void signals_catch(void (*note)(int), const char *late) {
+    if (!note)
+        alarm(0);
+    if_late = late ? late : "";
+    to_note = note;
+    for (size_t i = 0; i < sizeof of_note / sizeof *of_note; i++)
+        signal_catch(of_note[i], note_or_end);
 }
 
 /* Where memory is out the program ends from anywhere. */
@@ -65,13 +111,14 @@ static void catch_where_none_is(int number) {
 
 static void watch_the_end(void) {
     static const int others[] = {SIGQUIT,   SIGUSR1, SIGUSR2, SIGALRM,
-                                 SIGVTALRM, SIGPROF, SIGXCPU, SIGPIPE,
-                                 SIGSYS,    SIGABRT, SIGTRAP, SIGPOLL};
+                                 SIGVTALRM, SIGPROF, SIGPIPE, SIGSYS,
+                                 SIGABRT,   SIGTRAP, SIGPOLL};
     static bool watched;
     if (!watched)
         atexit(remove_at_exit);
     watched = true;
-    signals_catch(remove_and_end);
+    if (!to_note)
+        signals_catch(NULL, NULL);
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         catch_where_none_is(others[i]);
 #ifdef SIGPWR
@@ -94,19 +141,6 @@ void output_leave(void (*call)(int)) {
     leave = call;
     if (call)
         watch_the_end();
-}
-
-void signal_catch(int number, void (*note)(int)) {
-    struct sigaction found,
-        caught = {.sa_handler = note, .sa_flags = (int)SA_RESETHAND};
-    if (sigaction(number, NULL, &found) == 0 && found.sa_handler != SIG_IGN)
-        sigaction(number, &caught, NULL);
-}
-
-void signals_catch(void (*note)(int)) {
-    static const int numbers[] = {SIGHUP, SIGINT, SIGTERM};
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
-        signal_catch(numbers[i], note);
 }
 
 /* A device or a pipe is written to as it is, and so is what a symbolic link

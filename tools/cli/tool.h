@@ -320,10 +320,14 @@ int output_open(output *, const char *name); /* NULL: stdout */
    name: it is locked, and what is there stays until it is closed.
    who  "run": what is refused where another one has it locked */
 int output_claim(output *, const char *name, const char *who);
-/* Calls `note` when one of the signals that end programs comes, unless it is
-   ignored.  The second one of a kind ends the program. */
-void signals_catch(void (*note)(int));
+/* Calls `note` when the first of the signals that end programs comes, unless it is
+   ignored; one more ends the program, and so does the first where `note` is NULL.
+   late  printed where the program ends since it took longer than a second after
+         `note`: steps may have a million substeps; kept */
+void signals_catch(void (*note)(int), const char *late);
 void signal_catch(int number, void (*note)(int));
+/* Ends the program as that signal does. */
+void signal_end(int number);
 /* Calls `leave` where the program ends before it is taken back by NULL: with the
    number of the signal, or with 0 where memory is out.  It may call only what
    handlers of signals may. */

@@ -13,19 +13,24 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-/* What a signal stops; members under way are finished. */
+/* What a signal stops, and which one came; members under way are left. */
 static nevh_sweep *volatile under_way;
+static volatile sig_atomic_t interrupted;
 
-static void note_signal(int number) {
+static void note_time(int number) {
     (void)number;
     if (under_way)
         nevh_sweep_stop(under_way);
 }
 
-/* Signals, and the end of so many seconds, unless they are 0. */
-static void stop_at_signals(double seconds) {
-    signals_catch(note_signal);
-    signal_catch(SIGALRM, note_signal);
+static void note_signal(int number) {
+    interrupted = number;
+    note_time(number);
+}
+
+/* Unless the seconds are 0. */
+static void stop_after(double seconds) {
+    signal_catch(SIGALRM, note_time);
     double whole = floor(fmin(seconds, 1e9));
     struct itimerval timer = {
         .it_value = {(time_t)whole, (suseconds_t)(1e6 * (seconds - whole))}};
@@ -116,15 +121,20 @@ static int tell_array(sweep_job *j) {
 }
 
 static int run_array(sweep_job *j) {
+    char *late = text_print("nevh: %s: stopped: go on with --resume %s\n",
+                            j->store.name, j->store.name);
     under_way = j->sweep;
-    stop_at_signals(j->options->stop_after);
+    signals_catch(note_signal, late);
+    stop_after(j->options->stop_after);
     sweep_begin(j);
     bool shared = j->ranks.count > 1;
     int status = shared ? nevh_sweep_run_chunks(j->sweep, ranks_take, &j->ranks,
                                                 is_wanted, keep, j)
                         : nevh_sweep_run(j->sweep, j->store.first,
                                          j->store.count, is_wanted, keep, j);
+    signals_catch(NULL, NULL);
     under_way = NULL;
+    free(late);
     status = sweep_end(j, status);
     if (shared)
         status = ranks_close(&j->ranks, status);
@@ -238,11 +248,14 @@ int sweep_array(sweep_job *j) {
         if (!status)
             status = run_array(j);
     }
-    if (j->map && !j->ranks.rank && status != TOOL_USAGE)
+    bool ends = status == TOOL_STOPPED && interrupted;
+    if (j->map && !j->ranks.rank && status != TOOL_USAGE && !ends)
         status = draw_array(j, status);
     store_close(&j->store);
     free(name);
     free(settings);
     free(story);
+    if (ends && j->ranks.count == 1)
+        signal_end(interrupted);
     return status;
 }

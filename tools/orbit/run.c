@@ -27,6 +27,7 @@ typedef struct {
     line_file lines;
     trajectory *trajectory;
     char *state, *settings; /* NULL: there is nothing to save */
+    char *words;            /* said when it is interrupted */
     bool saves;             /* so far it could be saved */
 } run_job;
 
@@ -198,6 +199,9 @@ static int save_often(void *data) {
 
 static void begin_saving(run_job *j, const char *name) {
     j->state = text_print("%s" STATE_ENDING, name);
+    if (!j->options->quiet)
+        j->words =
+            text_print("nevh: interrupted; to go on: --resume %s\n", name);
     j->settings = describe(j);
     j->saves = true;
 }
@@ -215,15 +219,15 @@ static int open_new(run_job *j) {
         begin_saving(j, o->file);
     int status = j->lines.regular ? save(j, false) : TOOL_OK;
     if (o->file) /* the file stands: a signal leaves it to be resumed */
-        signals_catch(note_signal);
+        signals_catch(note_signal, j->words);
     return status;
 }
 
 static int open_again(run_job *j) {
     const char *name = j->options->resume;
     run_state *s = trajectory_state(j->trajectory);
-    signals_catch(note_signal);
     begin_saving(j, name);
+    signals_catch(note_signal, j->words);
     if (state_load(j->state, j->settings, s) ||
         trajectory_restore(j->trajectory) ||
         lines_reopen(&j->lines, name, s->at.bytes, s->at.digest))
@@ -234,15 +238,12 @@ static int open_again(run_job *j) {
 /* The rest of a run that was told to end. */
 static int give_up(run_job *j) {
     int number = interrupted;
-    const char *name =
-        j->options->resume ? j->options->resume : j->options->file;
     if (save(j, true))
         return TOOL_USAGE;
-    if (!j->options->quiet && j->saves)
-        fprintf(stderr, "nevh: interrupted; to go on: --resume %s\n", name);
+    if (j->words && j->saves)
+        fputs(j->words, stderr);
     lines_close(&j->lines);
-    signal(number, SIG_DFL);
-    raise(number);
+    signal_end(number);
     return TOOL_FAILED;
 }
 
@@ -256,6 +257,7 @@ static int write_lines(run_job *j) {
     int status = j->options->resume ? open_again(j) : open_new(j);
     if (!status)
         status = follow(j, save_often);
+    signals_catch(NULL, NULL);
     if (!status && !trajectory_finished(j->trajectory))
         return give_up(j);
     list words = {0};
@@ -338,6 +340,7 @@ static int run_scene(const options *o) {
     list_free(&j.notes);
     free(j.rows_text);
     free(j.state);
+    free(j.words);
     free(j.settings);
     return status;
 }

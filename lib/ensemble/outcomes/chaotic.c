@@ -187,13 +187,19 @@ static int done_waiting(void *ensemble, const nevh__chaos_member *found) {
     return hand_on(e, w->member, found, w->values);
 }
 
+static void run_jobs(nevh_ensemble *e, nevh__chaos_jobs jobs) {
+    jobs.ending = e->ending;
+    nevh__chaos_batch_run(e->chaotic->chaos, &jobs);
+    e->stopped |= nevh__ensemble_ends(e);
+}
+
 static void run_waiting(nevh_ensemble *e) {
     nevh__chaotic *x = e->chaotic;
     nevh__chaos_jobs jobs = x->jobs;
     jobs.next = next_waiting;
     jobs.done = done_waiting;
     x->taken = 0;
-    nevh__chaos_batch_run(x->chaos, &jobs);
+    run_jobs(e, jobs);
     x->queued = 0;
 }
 
@@ -235,6 +241,6 @@ bool nevh__chaotic_run(nevh_ensemble *e) {
     nevh__chaos_jobs jobs = e->chaotic->jobs;
     jobs.next = next_alone;
     jobs.done = done_alone;
-    nevh__chaos_batch_run(e->chaotic->chaos, &jobs);
+    run_jobs(e, jobs);
     return true;
 }
