@@ -329,6 +329,7 @@ step_texts = integrators/kernels/splitting_step.h \
 	lib/native/steps/implicit_orbit.h \
 	lib/native/steps/implicit_lanes.h \
 	lib/native/steps/entry.h \
+	lib/native/steps/tao_driver.h \
 	lib/native/steps/block_driver.h \
 	lib/native/steps/long_driver.h \
 	lib/native/steps/compiled_needs.h \

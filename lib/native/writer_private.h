@@ -127,6 +127,7 @@ extern const char *const nevh__adaptive_verlet_driver_text[];
 extern const char *const nevh__implicit_driver_text[];
 extern const char *const nevh__implicit_orbit_text[];
 extern const char *const nevh__implicit_lanes_text[];
+extern const char *const nevh__tao_driver_text[];
 extern const char *const nevh__entry_text[];
 extern const char *const nevh__block_driver_text[];
 extern const char *const nevh__long_driver_text[];

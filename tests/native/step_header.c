@@ -132,6 +132,10 @@ static const double UNIT_Q = 1, UNIT_P = 1, LEAST_RATE = 1e-9;
 #include "run/fraction_private.h"
 #endif
 #endif
+#ifdef FAMILY_TAO
+enum { PARTS = 3 };
+static const double WEIGHTS[1] = {1.35}, RATIOS[DOF] = {1, 2}, OMEGA = 10;
+#endif
 #ifdef FAMILY_IMPLICIT
 #define NEVH__ONE_SHAPE
 #define TABLE(b) (N + (b))
@@ -168,6 +172,6 @@ static inline double worst_noise(NEVH__COMPILED(const double *N, ) double t,
 
 #include STEPS
 #if !defined NEVH__FOR_READERS && !defined FAMILY_ADAPTIVE_VERLET &&           \
-    !defined FAMILY_DRIVER
+    !defined FAMILY_DRIVER && !defined FAMILY_TAO
 #include "native/steps/entry.h"
 #endif

@@ -32,6 +32,7 @@ for compiler in "$cc" clang; do
         compiles $compiler ADAPTIVE_VERLET native/steps/adaptive_verlet_driver.h $way
         compiles $compiler ADAPTIVE_VERLET native/steps/adaptive_verlet_driver.h \
             $way -DNEVH__REVERSIBLE
+        compiles $compiler TAO native/steps/tao_driver.h $way
         compiles $compiler IMPLICIT native/steps/implicit_orbit.h $way
         compiles $compiler IMPLICIT native/steps/implicit_orbit.h $way \
             -DNEVH__DIFFERENCES
@@ -50,6 +51,19 @@ for compiler in "$cc" clang; do
             -DNEVH__FOR_READERS $forms
     done
 done
+
+# What NEVH__COMPILED stands for ends in its line.
+awk '{ rest = $0
+       while (match(rest, /NEVH__COMPILED\(/)) {
+           rest = substr(rest, RSTART + RLENGTH)
+           open = 1
+           for (i = 1; i <= length(rest) && open > 0; i++) {
+               c = substr(rest, i, 1)
+               open += (c == "(") - (c == ")")
+           }
+           if (open > 0) { print FILENAME ":" FNR ": " $0; found = 1 }
+       } }
+     END { exit !found }' "$srcdir"/lib/native/steps/*.h && status=1
 
 # Each header is tried, and a wrong one is found.
 for header in "$srcdir"/lib/native/steps/*.h; do

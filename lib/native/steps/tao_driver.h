@@ -1,0 +1,125 @@
+/* nevh: a step of Tao's schemes in block_driver.h.
+
+   The text needs what tao_step.h does, a scene's kick_slope and drift_slope, and
+   numbers of the scheme: PARTS, WEIGHTS, RATIOS, OMEGA.  lib/native hands it to the
+   C compiler.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_TAO_DRIVER_H
+#define NEVH_TAO_DRIVER_H
+
+#include "kernels/tao_step.h"
+
+struct nevh__tao_owner {
+    nevh__number *bad;
+    NEVH__COMPILED(const double *N;)
+};
+
+NEVH__INLINE int nevh__tao_slope(const nevh__tao_step *z,
+                                 const nevh__tao_group *g, double t) {
+    const struct nevh__tao_owner *o = z->owner;
+    *o->bad += kick_slope(NEVH__COMPILED(o->N, ) t, g->q, g->p, g->dh_dq);
+    *o->bad += drift_slope(NEVH__COMPILED(o->N, ) t, g->q, g->p, g->dh_dp);
+    return 0;
+}
+
+#ifndef NEVH__FOR_READERS
+NEVH__INLINE int nevh__tao_account(const nevh__tao_step *z,
+                                   const nevh__tao_group *g, double h) {
+    (void)z, (void)g, (void)h;
+    return 0;
+}
+
+/* The memory behind digits that sums have lost: the second copy less the first,
+   and the gradient where the step begins. */
+enum { KEPT = 4 * DOF };
+static __attribute__((noinline)) nevh__number
+take_first(const double *N, const double *T, double t, double h,
+           const nevh__number *y, const nevh__number *lost, nevh__number *kept,
+           nevh__number *room) {
+    nevh__number point[2 * DOF], bad;
+    (void)T, (void)h, (void)room;
+    NEVH__EACH(k, 1, DOF) {
+        point[k] = y[k] + lost[k];
+        point[DOF + k] = y[DOF + k] + (kept[DOF + k] + lost[DOF + k]);
+    }
+    bad = (nevh__number){0} +
+          kick_slope(N, t, point, point + DOF, kept + 2 * DOF);
+    bad += drift_slope(N, t, point, point + DOF, kept + 3 * DOF);
+    return bad;
+}
+#endif
+
+/* A step of the state y, q and then p, and of the second copy.  Returns 0 if all is
+   finite.  W: h, and what tao_prepare makes of it. */
+NEVH__INLINE nevh__number
+step_copies(NEVH__COMPILED(const double *N, ) double *W, double t, double h,
+            nevh__number *y, nevh__number *lost, nevh__number *kept) {
+    nevh__number moved[4 * DOF], points[4 * DOF], slopes[4 * DOF];
+    nevh__number bad = {0};
+    struct nevh__tao_owner owner = {&bad NEVH__COMPILED(, N)};
+    nevh__tao_step z = {.size = DOF,
+                        .width = 1,
+                        .parts = PARTS,
+                        .lengths = W + 1,
+                        .ratio = RATIOS,
+                        .start_q = y,
+                        .start_p = y + DOF,
+                        .compensation = lost,
+                        .q = moved,
+                        .p = moved + DOF,
+                        .x = moved + 2 * DOF,
+                        .y = moved + 3 * DOF,
+                        .a = {points, points + DOF, slopes, slopes + DOF},
+                        .b = {points + 2 * DOF, points + 3 * DOF,
+                              slopes + 2 * DOF, slopes + 3 * DOF},
+                        .owner = &owner};
+    if (W[0] != h)
+        nevh__tao_prepare(PARTS / 2, WEIGHTS, OMEGA, h, W + 1);
+    W[0] = h;
+    NEVH__EACH(k, 1, 2 * DOF) {
+        moved[k] = (nevh__number){0};
+        moved[2 * DOF + k] = kept[k];
+        slopes[k] = kept[2 * DOF + k];
+    }
+#ifdef NEVH__FOR_READERS
+    if (kept[4 * DOF] == 0) {
+        nevh__tao_place(&z, &z.a, z.q, z.y);
+        nevh__tao_slope(&z, &z.a, t);
+    }
+#endif
+    nevh__tao_take(&z, t);
+    NEVH__EACH(k, 1, 2 * DOF) {
+        nevh__number change = moved[k] + lost[k], next = y[k] + change;
+        bad += (next - next) + (moved[2 * DOF + k] - moved[2 * DOF + k]);
+        lost[k] = nevh__roundoff(next, y[k], change);
+        y[k] = next;
+    }
+#ifdef NEVH__FOR_READERS
+    if (bad != 0)
+        return bad;
+    kept[4 * DOF] = 1;
+#endif
+    NEVH__EACH(k, 1, 2 * DOF) {
+        kept[k] = moved[2 * DOF + k];
+        kept[2 * DOF + k] = slopes[k];
+    }
+    return bad;
+}
+
+#ifdef NEVH__FOR_READERS
+static double take_step(double t, double h, double *y, double *lost,
+                        double *kept) {
+    static double W[3 * PARTS + 1];
+    return step_copies(W, t, h, y, lost, kept);
+}
+#else
+NEVH__INLINE nevh__number take_step(const double *N, double *W, double *T,
+                                    size_t operations, double t, double h,
+                                    nevh__number *y, nevh__number *lost,
+                                    nevh__number *kept, nevh__number *room) {
+    (void)T, (void)operations, (void)room;
+    return step_copies(N, W, t, h, y, lost, kept);
+}
+#endif
+
+#endif
