@@ -57,6 +57,7 @@ libnevh_core_la_SOURCES += \
 	integrators/kernels/tableau_private.h \
 	integrators/kernels/tableau.c \
 	integrators/kernels/stage_guess.c \
+	integrators/kernels/implicit_tableau.c \
 	integrators/kernels/gauss_coefficients.c \
 	integrators/kernels/lobatto_coefficients.c \
 	integrators/kernels/implicit_kernel.c \

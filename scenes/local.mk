@@ -22,6 +22,7 @@ dist_scenes_DATA = \
 	scenes/oscillator-paper.nevh \
 	scenes/oscillator.nevh \
 	scenes/outer-solar-system.nevh \
+	scenes/own-integrators.nevh \
 	scenes/pendulum-filmed.nevh \
 	scenes/pendulum-filmed.csv \
 	scenes/pendulum-periods.nevh \

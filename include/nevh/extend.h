@@ -207,8 +207,8 @@ typedef struct {
     const long double *kick, *drift; /* each adds up to 1 */
     size_t stages;                   /* at most NEVH_MOST_STAGES */
     const long double *a; /* stages x stages, row by row; where it is not
-                                        strictly lower triangular the method is implicit,
-                                        and no b[i] may be 0 */
+                             strictly lower triangular the method is
+                             implicit */
     const long double *b; /* stages; adds up to 1 */
     const long double *c; /* stages: the sums of a's rows; NULL: they are */
     const nevh_integrator *base; /* a splitting, or a Runge-Kutta method */

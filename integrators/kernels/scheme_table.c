@@ -216,22 +216,54 @@ static void give_explicit(own_scheme *x, size_t s) {
     x->scheme.table = &x->butcher;
 }
 
-static bool give_implicit(own_scheme *x, size_t s,
-                          const nevh_scheme_facts *facts, nevh_table_error *e) {
+/* A stage without a weight has no part in what makes mu exact. */
+static void give_implicit(own_scheme *x, size_t s,
+                          const nevh_scheme_facts *facts) {
     const long double *a = x->wide, *b = a + s * s;
-    for (size_t i = 0; i < s; i++)
-        if (b[i] == 0)
-            return fail(e, 'b', i,
-                        "an implicit table has no weight that is 0 here");
     x->implicit = (nevh__implicit_table){.stages = s,
                                          .a = a,
                                          .b = b,
                                          .c = b + s,
                                          .symplectic = facts->symplectic};
+    for (size_t i = 0; i < s; i++)
+        if (b[i] == 0)
+            x->implicit.symplectic = false;
     x->scheme.sweep_gradients = (int)s;
     x->scheme.explicit_form = NEVH_NO;
     x->scheme.kernel = &nevh__implicit_kernel;
     x->scheme.table = &x->implicit;
+}
+
+/* A method of order 2 may have other nodes than sums of rows, as Lobatto IIIB of two
+   stages, if its condition of order 2 holds for these, too. */
+static bool has_free_nodes(size_t s, const long double b[],
+                           const long double c[],
+                           const nevh_scheme_facts *facts) {
+    long double sum = 0, size = 1;
+    for (size_t i = 0; i < s; i++) {
+        sum += b[i] * c[i];
+        size += fabsl(b[i] * c[i]);
+    }
+    return facts->order == 2 && fabsl(sum - 0.5L) <= NEVH__DIGITS * size;
+}
+
+/* Fills in nodes, and compares them with those that are given. */
+static bool take_nodes(own_scheme *x, size_t s, const long double *c,
+                       const nevh_scheme_facts *facts, nevh_table_error *e) {
+    long double *a = x->wide, *b = a + s * s, *rows = b + s;
+    bool any = c && has_free_nodes(s, b, c, facts);
+    for (size_t i = 0; i < s; i++) {
+        long double size = c ? fabsl(c[i]) : 0;
+        for (size_t j = 0; j < s; j++) {
+            rows[i] += a[i * s + j];
+            size += fabsl(a[i * s + j]);
+        }
+        if (c && !any && !(fabsl(rows[i] - c[i]) <= 2 * NEVH__DIGITS * size))
+            return fail(e, 'c', i,
+                        "row %zu of a adds up to %.12Lg, but c_%zu is %.12Lg",
+                        i + 1, rows[i], i + 1, c[i]);
+        rows[i] = c ? c[i] : rows[i];
+    }
     return true;
 }
 
@@ -239,27 +271,15 @@ static bool give_implicit(own_scheme *x, size_t s,
 static bool make_of_coefficients(own_scheme *x, size_t s, const long double *c,
                                  nevh_scheme_facts *facts,
                                  nevh_table_error *e) {
-    long double *a = x->wide, *b = a + s * s, *rows = b + s;
-    for (size_t i = 0; i < s; i++) {
-        long double size = 0;
-        for (size_t j = 0; j < s; j++) {
-            rows[i] += a[i * s + j];
-            size += fabsl(a[i * s + j]);
-        }
-        if (c &&
-            !(fabsl(rows[i] - c[i]) <= 2 * NEVH__DIGITS * (size + fabsl(c[i]))))
-            return fail(e, 'c', i,
-                        "row %zu of a adds up to %.12Lg, but c_%zu is %.12Lg",
-                        i + 1, rows[i], i + 1, c[i]);
-        if (c)
-            rows[i] = c[i];
-    }
     x->scheme.stages = (int)s;
-    if (nevh__runge_kutta_facts(s, a, b, facts))
+    if (nevh__runge_kutta_facts(s, x->wide, x->wide + s * s, facts))
         return no_memory(e);
-    if (!is_explicit(s, a))
-        return give_implicit(x, s, facts, e);
-    give_explicit(x, s);
+    if (!take_nodes(x, s, c, facts, e))
+        return false;
+    if (is_explicit(s, x->wide))
+        give_explicit(x, s);
+    else
+        give_implicit(x, s, facts);
     return true;
 }
 

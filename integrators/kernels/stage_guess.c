@@ -20,7 +20,6 @@
    it is that polynomial: two steps would save 5 of gauss16, which they cost.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tableau_private.h"
-#include <math.h>
 
 /* Slopes that take part, and steps. */
 enum { SLOPES = 16, MOST_STEPS = 9, FITTED = 2, FEW_STAGES = 5 };
@@ -36,10 +35,9 @@ static size_t degree_of(const nevh__rule *r) {
     return s + 2 < most ? s + 2 : most;
 }
 
-/* Weights of values at x whose polynomial of least squares is that at `to`: sums
-   of polynomials that are orthogonal on x, one degree after the other. */
-static void fit(size_t count, const long double x[], size_t degree,
-                long double to, long double weights[]) {
+/* Sums of polynomials that are orthogonal on x, one degree after the other. */
+void nevh__guess_fit(size_t count, const long double x[], size_t degree,
+                     long double to, long double weights[]) {
     long double last[FITTED * NEVH__MOST_STAGES];
     long double now[FITTED * NEVH__MOST_STAGES];
     long double last_to = 0, now_to = 1, last_norm = 1,
@@ -77,7 +75,7 @@ static void find_weights(const nevh__rule *r, const long double x[], size_t i,
     const size_t order = nevh__guess_steps(s) - FITTED;
     long double fits[FITTED * NEVH__MOST_STAGES], part = -1;
     long double sums[SLOPES + FITTED * NEVH__MOST_STAGES] = {0};
-    fit(fitted, x, degree_of(r), 1 + r->c[i], fits);
+    nevh__guess_fit(fitted, x, degree_of(r), 1 + r->c[i], fits);
     for (size_t j = 0; j < fitted; j++)
         sums[j] = fits[j];
     for (size_t k = 1; k <= order; k++) {
@@ -96,24 +94,4 @@ void nevh__guess_weights(const nevh__rule *r, double guess[]) {
         x[j] = r->c[j % r->stages] - (long double)(j / r->stages);
     for (size_t i = 0; i < r->stages; i++)
         find_weights(r, x, i, guess);
-}
-
-/* A polynomial through few nodes, which may stand anywhere, and together. */
-void nevh__guess_plain(const nevh__rule *r, double guess[]) {
-    enum { MOST_DEGREE = 4 };
-    static const long double together = 1e-6L;
-    long double weights[NEVH__MOST_STAGES];
-    size_t apart = 0;
-    for (size_t i = 0; i < r->stages; i++) {
-        bool first = true;
-        for (size_t j = 0; j < i; j++)
-            first &= fabsl(r->c[i] - r->c[j]) > together;
-        apart += first;
-    }
-    size_t degree = apart - 1 < MOST_DEGREE ? apart - 1 : MOST_DEGREE;
-    for (size_t i = 0; i < r->stages; i++) {
-        fit(r->stages, r->c, degree, 1 + r->c[i], weights);
-        for (size_t j = 0; j < r->stages; j++)
-            guess[j * r->stages + i] = (double)weights[j];
-    }
 }

@@ -51,7 +51,7 @@ static void fill_matrices(nevh__tableau *a, const nevh__rule *r, bool alike) {
     }
 }
 
-static void fill_order(nevh__tableau *a) {
+void nevh__tableau_sort(nevh__tableau *a) {
     for (size_t i = 0; i < a->stages; i++) {
         size_t at = i;
         for (; at > 0 && fabs(a->b[a->order[at - 1]]) > fabs(a->b[i]); at--)
@@ -71,11 +71,10 @@ static void fill(nevh__tableau *a, const nevh__rule *r, bool alike) {
     if (a->steps > 1)
         nevh__guess_weights(r, a->long_guess);
     fill_matrices(a, r, alike);
-    fill_order(a);
+    nevh__tableau_sort(a);
 }
 
-/* Room for a tableau. */
-static nevh__tableau *reserve(size_t s, size_t steps) {
+nevh__tableau *nevh__tableau_reserve(size_t s, size_t steps) {
     nevh__tableau *a = nevh__array(1, sizeof *a);
     double *all = nevh__array(s * ((5 + steps) * s + 2), sizeof *all);
     size_t *order = nevh__array(s, sizeof *order);
@@ -96,43 +95,10 @@ static nevh__tableau *reserve(size_t s, size_t steps) {
 }
 
 nevh__tableau *nevh__tableau_new(const nevh__rule *r, bool alike) {
-    nevh__tableau *a = reserve(r->stages, nevh__guess_steps(r->stages));
+    nevh__tableau *a =
+        nevh__tableau_reserve(r->stages, nevh__guess_steps(r->stages));
     if (a)
         fill(a, r, alike);
-    return a;
-}
-
-/* mu_ij and mu_ji of a symplectic method add up to 1 exactly. */
-static double mu_of(const nevh__implicit_table *x, size_t i, size_t j) {
-    size_t s = x->stages;
-    long double mu = x->a[i * s + j] / x->b[j];
-    long double across = x->a[j * s + i] / x->b[i];
-    if (!x->symplectic)
-        return (double)mu;
-    if (i == j)
-        return 0.5;
-    bool first = mu > across || (mu == across && i < j);
-    return first ? (double)mu : 1 - (double)across;
-}
-
-nevh__tableau *nevh__implicit_new(const nevh__implicit_table *x) {
-    size_t s = x->stages;
-    nevh__tableau *a = reserve(s, 1);
-    nevh__rule r = {s, {0}, {0}};
-    for (size_t i = 0; a && i < s; i++) {
-        a->c[i] = (double)x->c[i];
-        a->b[i] = (double)x->b[i];
-        r.c[i] = x->c[i];
-        for (size_t j = 0; j < s; j++) {
-            size_t m = j * s + i;
-            a->mu_q[m] = a->mu_p[m] = mu_of(x, i, j);
-            a->a_q[m] = a->a_p[m] = a->mu_q[m] * (double)x->b[j];
-        }
-    }
-    if (a) {
-        nevh__guess_plain(&r, a->guess);
-        fill_order(a);
-    }
     return a;
 }
 

@@ -47,7 +47,7 @@ nevh__tableau *nevh__implicit_euler_new(size_t stages);
 /* An implicit method of one's own. */
 typedef struct {
     size_t stages;
-    const long double *a, *b, *c; /* a row by row; no b is 0 */
+    const long double *a, *b, *c; /* a row by row */
     bool symplectic;
 } nevh__implicit_table;
 extern const nevh_kernel nevh__implicit_kernel;
@@ -65,8 +65,12 @@ void nevh__gauss_rule(size_t stages, nevh__rule *);
    guess[(k*stages + j)*stages + i]. */
 size_t nevh__guess_steps(size_t stages);
 void nevh__guess_weights(const nevh__rule *, double guess[]);
-/* Weights of one step's derivatives, of any rule. */
-void nevh__guess_plain(const nevh__rule *, double guess[]);
+/* Weights of `count` values at x whose polynomial of least squares is that at `to`. */
+void nevh__guess_fit(size_t count, const long double x[], size_t degree,
+                     long double to, long double weights[]);
+/* Room for a tableau; and its order, once b is there. */
+nevh__tableau *nevh__tableau_reserve(size_t stages, size_t steps);
+void nevh__tableau_sort(nevh__tableau *);
 /* P_s(x) and its derivative, |x| < 1; s from 1. */
 long double nevh__legendre(size_t s, long double x, long double *slope);
 

@@ -78,9 +78,10 @@ static int check_schemes(const options *o) {
         if (strchr(name, '+'))
             return tool_refuse("%s: a page has no transforms of time", name);
         if (!nevh_integrator_named(name))
-            return tool_refuse("unknown integrator %s; see nevh list "
-                               "integrators",
-                               name);
+            return tool_refuse(
+                "unknown integrator %s; a page has those of nevh "
+                "list integrators",
+                name);
     }
     return TOOL_OK;
 }
