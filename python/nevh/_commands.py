@@ -260,6 +260,8 @@ def _scene_words(of, source, given, folder, coordinates, sections=""):
         ends = "t-end" in of["options"] and "at" not in given
         if y0 is None and "vary" not in given or ends and "t_end" not in given:
             raise Refused("a formula needs y0" + " and t_end" * ends)
+    if callable(source):  # its scene starts there
+        y0 = None
     words, path = list(made._changes), made.path
     if path is None or not os.path.exists(path) or sections:
         if path is None or not os.path.exists(path):

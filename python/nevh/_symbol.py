@@ -52,7 +52,7 @@ def place_now():
 
 
 def is_number(x):
-    return isinstance(x, numbers.Real) or (
+    return isinstance(x, numbers.Real) and not isinstance(x, Symbol) or (
         hasattr(x, "dtype") and getattr(x, "ndim", 1) == 0 and x.dtype.kind in "biuf")
 
 
@@ -209,6 +209,9 @@ class Symbol:
         raise TypeError("a number is no row of numbers")
 
 
+numbers.Real.register(Symbol)  # as functions ask of their arguments
+
+
 # What `math` has.
 
 def _of(operation):
@@ -328,7 +331,7 @@ def scalar(x):
 
 class _Kind(type):
     def __instancecheck__(cls, x):
-        return isinstance(x, cls.plain)
+        return isinstance(x, (cls.plain, Symbol))
 
     def __subclasscheck__(cls, kind):
         return issubclass(kind, cls.plain)

@@ -75,6 +75,14 @@ class Calls:
         function = function or self.function
         return lambda t, y: function(t, *self.state(y), *args, **named)
 
+    def key(self):
+        """What is equal for calls that compute the same, else None."""
+        given = [*self.args, *itertools.chain(*sorted(self.parameters.items()))]
+        if type(self.function) is not type(_quiet) or not all(
+                isinstance(x, (int, float, str, type(None))) for x in given):
+            return None
+        return (self.n, len(self.args)) + tuple((type(x), x) for x in given)
+
     def given(self):
         """{name: value} of all that is given by name, position or default."""
         return dict(itertools.chain(self.defaults.items(), zip(self.names, self.args),
@@ -91,10 +99,10 @@ def array(values):
 
 
 class Traced:
-    """A function as the text of a scene."""
+    """A function as the text of a scene, and its graph."""
 
-    def __init__(self, text, parameters, operations):
-        self.text, self.parameters, self.operations = text, parameters, operations
+    def __init__(self, text, graph, root):
+        self.text, self.graph, self.root = text, graph, root
 
 
 def trace(calls, t0, y0, coordinates=None, title="H"):
@@ -103,14 +111,24 @@ def trace(calls, t0, y0, coordinates=None, title="H"):
     return _Trace(calls, t0, list(map(float, y0)), coordinates, title).traced()
 
 
+def still_holds(traced, calls, t0, y0):
+    """Whether a function still has the values that were traced, at a few states."""
+    try:
+        _Trace(calls, t0, list(map(float, y0)), None, "").check(traced.graph, traced.root, 4)
+    except Untraceable:
+        return False
+    return True
+
+
 class _Trace:
     def __init__(self, calls, t0, y0, coordinates, title):
         self.calls, self.t0, self.y0, self.title = calls, t0, y0, title
         self.given = coordinates
+        names = {re.sub(r"\[.*", "", text) for text in coordinates or ()}
         self.symbolic = {
             name: float(x) for name, x in calls.given().items()
             if is_number(x) and not isinstance(x, bool) and may_be_named(name) and
-            math.isfinite(x)}
+            math.isfinite(x) and name not in names}
 
     def traced(self):
         while True:
@@ -126,12 +144,12 @@ class _Trace:
                     raise self.foreign(error) from None
                 self.symbolic = {}
         self.check(graph, root)
-        used = {name: x for name, x in self.symbolic.items()}
         try:
-            text = scene_text(graph, root, self.coordinates(), self.y0, used, self.title)
+            text = scene_text(graph, root, self.coordinates(), self.y0, self.symbolic,
+                              self.title)
         except (ValueError, RecursionError) as error:
             raise Untraceable(str(error), self.definition()) from None
-        return Traced(text, used, len(graph.below([root])))
+        return Traced(text, graph, root)
 
     def drop(self, names):
         """Makes plain numbers of parameters."""
@@ -214,10 +232,10 @@ class _Trace:
                           for name, x in self.symbolic.items()}
             yield t, y, parameters
 
-    def check(self, graph, root):
+    def check(self, graph, root, count=_CHECKS):
         """Fails where the function and its graph differ by more than rounding."""
         needed = graph.below([root])
-        count = max(4, min(_CHECKS, _CHECKED_OPERATIONS // (1 + len(needed))))
+        count = max(4, min(count, _CHECKED_OPERATIONS // (1 + len(needed))))
         compared = 0
         for t, y, parameters in self.points(count):
             known = self.value(t, y, parameters)
@@ -275,7 +293,7 @@ class _Trace:
                               dict(self.symbolic), self.title)
         except Exception:
             return None
-        return Traced(text, self.symbolic, len(graph.nodes))
+        return Traced(text, graph, root)
 
     def value_of(self, graph, x):
         if not isinstance(x, Symbol):

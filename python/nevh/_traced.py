@@ -9,16 +9,18 @@ import ctypes as c
 import linecache
 import math
 import os
+import re
 import time
 import warnings
+import weakref
 
 from ._library import _lib, _Options, Refused
 from ._arrays import _numbers
 from ._scene import Scene
-from ._trace import Calls, array, guess, seconds_a_call, trace
+from ._trace import Calls, array, guess, seconds_a_call, still_holds, trace
 from ._symbol import Untraceable
 
-_warned, _factors = {}, {}
+_warned, _factors, _scenes = {}, {}, weakref.WeakKeyDictionary()
 
 
 def calls_of(function, y0, args, parameters):
@@ -34,21 +36,33 @@ def has_value(calls, t0, y0):
 
 
 def scene_of(calls, t0, y0, coordinates=None):
-    """A Scene of a function; raises Untraceable."""
-    scene = _parsed(_text_of(calls, t0, y0, coordinates))
+    """A Scene of a function; raises Untraceable.  The last of each function is kept, and
+    taken again while the function has the same values: it may read what has changed."""
+    key = calls.key()
+    if key is not None:
+        key += tuple(coordinates or ())
+        known, traced, scene = _scenes.get(calls.function, (None, None, None))
+        if known == key and still_holds(traced, calls, t0, y0):
+            return scene
+    traced = _traced_of(calls, t0, y0, coordinates)
+    scene = _parsed(traced.text)
     _compare(scene, calls, t0, y0)
+    if key is not None:
+        _scenes[calls.function] = key, traced, scene
     return scene
 
 
-def _text_of(calls, t0, y0, coordinates):
+def _traced_of(calls, t0, y0, coordinates):
     name = getattr(calls.function, "__name__", type(calls.function).__name__)
     title = "the function " + name if name.isidentifier() else "a function"
-    return trace(calls, t0, y0, coordinates, title).text
+    return trace(calls, t0, y0, coordinates, title)
 
 
 def text_of(function, y0, parameters=None, coordinates=None):
     """The text of a scene of a function, for what takes no values; refused where there
     is none."""
+    if isinstance(function, c._CFuncPtr):
+        raise Refused("H is a function in C, and is needed as a formula here")
     if y0 is None or isinstance(y0, dict):
         raise Refused("a function needs y0: its coordinates, then its momenta")
     y0, _ = _numbers(y0, "y0")
@@ -57,7 +71,7 @@ def text_of(function, y0, parameters=None, coordinates=None):
     calls = calls_of(function, y0, (), parameters)
     calls(0.0, array(y0))  # its own error is the best
     try:
-        text = _text_of(calls, 0.0, y0, coordinates)
+        text = _traced_of(calls, 0.0, y0, coordinates).text
         _compare(_parsed(text), calls, 0.0, y0)
     except Untraceable as error:
         raise Refused("H is no formula, and is needed as one here: %s"
@@ -69,7 +83,8 @@ def _parsed(text):
     try:
         scene = Scene(text)
     except Refused as error:
-        raise Untraceable("its formula is refused: %.300s" % error) from None
+        said = re.sub(r"^\w*:\d+:\d+: error: ", "", str(error)).split("\n")[0]
+        raise Untraceable("its formula is refused: " + said) from None
     scene.is_formula = True
     return scene
 

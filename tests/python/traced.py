@@ -7,6 +7,7 @@ SPDX-License-Identifier: GPL-3.0-or-later
 import abc
 import functools
 import math
+import numbers
 import os
 import random
 import sys
@@ -124,7 +125,7 @@ def by_helper(t, y):
 
 def other_way(t, y):
     x = y[0]
-    if isinstance(x, float):  # the line of other_way
+    if hasattr(x, "is_integer"):  # the line of other_way
         return y[1]**2 / 2 + x**2
     return y[1]**2 / 2 + x**4
 
@@ -321,6 +322,14 @@ def test_names_that_scenes_have_taken():
         return y[1]**2 / 2 + pi * y[0]**2 + math.sin(sin * y[0]) * q + p_q * y[0]
     text = "p_x^2/2 + 3*x^2 + 1.5*sin(2*x) + x/2"
     assert close(last(orbit_of(H)), last(orbit_of(text)), 1e-12)
+    named = orbit_of(lambda t, y, east=0.5: y[1]**2 / 2 + east * y[0]**2, [1, 0],
+                     coordinates=["east"])
+    assert close(last(named), last(orbit_of("p_x^2/2 + x^2/2", [1, 0])), 1e-12)
+
+    def asking(t, y):
+        x = y[0]
+        return y[1]**2 / 2 + (x**2 if isinstance(x, (float, numbers.Real)) else math.nan)
+    orbit_of(asking)
     named = orbit_of(lambda t, y: y[2]**2 / 2 + y[3]**2 / 2 + y[0] * y[1],
                      [1, 0, 0, 1], coordinates=["east", "north"])
     assert named.names == ["east", "north", "p_east", "p_north"]
@@ -388,6 +397,30 @@ def test_nothing_of_the_users_changes():
     assert h.__class__ is H and isinstance(h.count, int)
 
 
+strength = 2.0
+
+
+def reads_a_global(t, y):
+    return y[1]**2 / 2 + strength * y[0]**2 / 2
+
+
+def test_a_function_that_reads_something_else_is_traced_again():
+    global strength
+    for strength in (2.0, 3.0, 3.0, 2.0):
+        known = orbit_of("p_q^2/2 + %r*q^2/2" % strength, coordinates=["q"])
+        assert close(last(orbit_of(reads_a_global)), last(known), 1e-12)
+    box = [1.0]
+
+    def H(t, y, k=1.0):
+        return y[1]**2 / 2 + box[0] * k * y[0]**2 / 2
+    for box[0], k in ((1.0, 1.0), (4.0, 1.0), (4.0, 2), (1.0, 2.0), (1.0, 1)):
+        known = orbit_of("p_q^2/2 + %r*q^2/2" % (box[0] * k), coordinates=["q"])
+        mine = orbit_of(H, parameters={"k": k})
+        assert close(last(mine), last(known), 1e-12), (box, k)
+    assert orbit_of(H, coordinates=["x"]).names == ["x", "p_x"]
+    assert orbit_of(H, [1, 0.1]).names == ["q", "p_q"]
+
+
 def test_the_papers_listing():
     """Listing 1 and solve, which takes the object as well."""
     def H(t, s, k, m):
@@ -405,6 +438,24 @@ def test_the_papers_listing():
     assert listing["long"].energy_error < 1e-6 and listing["long"].success
     steps = nevh.solve(G, [0.0, 3.0], [1.0, 0.0], "rk4", dt=0.01)
     assert steps.gradient == "central4" and close(last(steps), [1, 0], 1e-3)
+
+
+def test_commands_take_functions():
+    """With the numbers of the same H as text."""
+    def H(t, y, k=2.0):
+        return y[1]**2 / 2 - k * math.cos(y[0])
+    mine = nevh.compare(H, ["verlet", "rk4"], dt=0.1, t_end=5, y0=[1, 0])
+    text = nevh.compare("p_q^2/2 - k*cos(q)", ["verlet", "rk4"], dt=0.1, t_end=5,
+                        y0=[1, 0], parameters={"k": 2.0}, coordinates=["q"])
+    for name in ("max_energy_error", "state_error", "gradient_evals", "verdict"):
+        assert list(mine[name]) == list(text[name]), name
+    assert "but q" not in " ".join(mine.notes)
+    if np is not None:
+        given = dict(dt=0.1, t_end=5, y0=[1, 0])
+        swept = nevh.sweep(H, {"q": [0.5, 1.0]}, "last(q)", "verlet", **given)
+        other = nevh.sweep("p_q^2/2 - k*cos(q)", {"q": [0.5, 1.0]}, "last(q)", "verlet",
+                           parameters={"k": 2.0}, coordinates=["q"], **given)
+        assert list(swept["last(q)"]) == list(other["last(q)"])
 
 
 def test_errors_of_the_function_are_its_own():
