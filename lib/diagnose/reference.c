@@ -156,15 +156,16 @@ static double doubted(const nevh_reference *r) {
     return most;
 }
 
-static int use_exact(nevh_reference *r) {
+static int use_exact(nevh_reference *r, bool *kept) {
+    *kept = true;
     if (exact_ranges(r))
         return nevh__fail(&r->report, NEVH_EFAILED,
                           "the exact solution (%s) loses its phase before "
                           "t = %.9g",
                           nevh__exact_name(r->exact), r->t1);
     r->error = doubted(r);
-    int status = nevh__watch_exact(r);
-    if (status)
+    int status = nevh__watch_exact(r, kept);
+    if (status || !*kept)
         return status;
     snprintf(r->text, sizeof r->text, "exact solution (%s)",
              nevh__exact_name(r->exact));
@@ -177,10 +178,12 @@ static void forget_ranges(nevh_reference *r) {
 }
 
 /* Series in place of an exact solution whose constants, or phase, have too few
-   digits; the solution where series are no better, or cost too much. */
-static int use_exact_or_series(nevh_reference *r) {
-    int status = use_exact(r);
-    if (status || !r->finest || r->error <= nevh__reference_wanted)
+   digits; the solution where series are no better, or cost too much.  *kept is
+   false where it does not keep H: it is that of other places than the orbit's, as
+   on one side of a wall. */
+static int use_exact_or_series(nevh_reference *r, bool *kept) {
+    int status = use_exact(r, kept);
+    if (status || !*kept || !r->finest || r->error <= nevh__reference_wanted)
         return status;
     nevh__exact_solution *exact = r->exact;
     double error = r->error, whole = r->horizon;
@@ -202,7 +205,7 @@ static int use_exact_or_series(nevh_reference *r) {
     forget_ranges(r);
     return status == NEVH_ENOMEM
                ? nevh__fail(&r->report, status, "out of memory")
-               : use_exact(r);
+               : use_exact(r, kept);
 }
 
 static int use_run(nevh_reference *r) {
@@ -262,7 +265,16 @@ static int make(nevh_reference *r) {
                                        r->start, r->start + r->n);
     if (status)
         return nevh__fail(&r->report, status, "out of memory");
-    return r->exact ? use_exact_or_series(r) : use_run(r);
+    if (!r->exact)
+        return use_run(r);
+    bool kept;
+    status = use_exact_or_series(r, &kept);
+    if (status || kept)
+        return status;
+    nevh__exact_free(r->exact);
+    r->exact = NULL;
+    forget_ranges(r);
+    return use_run(r);
 }
 
 static bool allocate(nevh_reference *r, const double q[], const double p[]) {

@@ -81,8 +81,8 @@ bool nevh__watch_step(nevh__watch *, const double coarse[],
                       const double fine[]);
 /* Says that H jumps, near that time. */
 int nevh__watch_fail(nevh_reference *, const nevh__jump *, double t);
-/* Tests an exact solution; adds to its own error. */
-int nevh__watch_exact(nevh_reference *);
+/* Tests an exact solution; adds to its own error where H is kept. */
+int nevh__watch_exact(nevh_reference *, bool *kept);
 /* The part of the run's own error that the change of H adds; 0 if the error of the
    runs explains it. */
 double nevh__watch_error(const nevh__watch *);

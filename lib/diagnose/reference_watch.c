@@ -13,7 +13,7 @@
 static const double far_above = 100; /* what the runs differ by in H */
 static const double rounding = 1e-8; /* of the effects: let alone what is less,
                                         which is in the own error */
-enum { HALVINGS = 50 };
+enum { HALVINGS = 40 }; /* to a place that is between two numbers, not one */
 
 /* Only where H is to stay the same. */
 static bool is_constant(const nevh_system *s) {
@@ -87,8 +87,10 @@ static size_t find_effect(nevh__watch *w, const double after[], double low,
 }
 
 /* Between two states: into the half over which H changes more, again and
-   again.  What is left of the change is a jump. */
-static void find_jump(nevh__watch *w, const double after[]) {
+   again.  What is left of the change is a jump, if it is no less than that of the
+   whole run: after steps over a wall H may change by rounding alone. */
+static void find_jump(nevh__watch *w, const double after[], double allowed) {
+    static const double part = 0.25;
     double low = 0, high = 1, size;
     long double h_low = value(w, between(w, after, 0), &size);
     long double h_high = value(w, between(w, after, 1), &size);
@@ -101,7 +103,7 @@ static void find_jump(nevh__watch *w, const double after[]) {
         *(lower ? &h_high : &h_low) = h;
     }
     w->jump = (nevh__jump){
-        .found = fabsl(h_high - h_low) > 0.25L * all,
+        .found = fabsl(h_high - h_low) > part * fmaxl(all, allowed),
         .by = (double)(h_high - h_low),
         .part = low,
         .effect = find_effect(w, after, low, high),
@@ -139,7 +141,7 @@ bool nevh__watch_step(nevh__watch *w, const double coarse[],
     w->changed = fmax(w->changed, change);
     double allowed = far_above * w->apart + rounding * w->size;
     if (change > allowed && change > allowed + 2 * find_rounding(w, fine)) {
-        find_jump(w, fine);
+        find_jump(w, fine, allowed);
         return false;
     }
     memcpy(w->before, fine, 2 * w->n * sizeof *fine);
@@ -167,41 +169,21 @@ static const double *exact_at(const nevh_reference *r, nevh__watch *w,
     return w->between;
 }
 
-/* Between two times: into the half over which H changes more. */
-static int find_exact_jump(nevh_reference *r, nevh__watch *w, double low,
-                           double high) {
-    double size;
-    long double h_low = value(w, exact_at(r, w, low), &size);
-    long double h_high = value(w, exact_at(r, w, high), &size);
-    for (int i = 0; i < HALVINGS; i++) {
-        double middle = low + (high - low) / 2;
-        long double h = value(w, exact_at(r, w, middle), &size);
-        bool lower = fabsl(h - h_low) > fabsl(h_high - h);
-        *(lower ? &high : &low) = middle;
-        *(lower ? &h_high : &h_low) = h;
-    }
-    memcpy(w->before, exact_at(r, w, low), 2 * w->n * sizeof *w->before);
-    memcpy(w->after, exact_at(r, w, high), 2 * w->n * sizeof *w->after);
-    w->jump.by = (double)(h_high - h_low);
-    w->jump.effect = find_effect(w, w->after, 0, 1);
-    return nevh__watch_fail(r, &w->jump, r->t0 + low);
-}
-
-int nevh__watch_exact(nevh_reference *r) {
+int nevh__watch_exact(nevh_reference *r, bool *kept) {
     enum { TIMES = 4096 };
     nevh__watch w;
+    *kept = true;
     int status = nevh__watch_init(&w, r);
     double part = (r->t1 - r->t0) / TIMES;
     if (!status)
         nevh__watch_begin(&w);
-    for (int i = 1; !status && w.field && i <= TIMES; i++) {
+    for (int i = 1; !status && *kept && w.field && i <= TIMES; i++) {
         memcpy(w.after, exact_at(r, &w, i * part), 2 * w.n * sizeof *w.after);
-        if (!nevh__watch_step(&w, w.after, w.after))
-            status = find_exact_jump(r, &w, (i - 1) * part, i * part);
+        *kept = nevh__watch_step(&w, w.after, w.after);
     }
-    if (!status)
+    if (!status && *kept)
         r->error = fmax(r->error, nevh__watch_error(&w));
-    else if (status == NEVH_ENOMEM)
+    if (status == NEVH_ENOMEM)
         nevh__fail(&r->report, status, "out of memory");
     nevh__watch_clear(&w);
     return status;

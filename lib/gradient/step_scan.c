@@ -15,6 +15,8 @@ enum { BUFFER = 2 * NEVH__MOST_OFFSETS * (LEVELS + 1) };
    rounded. */
 static const double out_of_balance = 1e4;
 static const double good = 0.1, no_good = 0.5; /* of the derivative */
+static const double far_worse = 1e3, consistent = 16;
+enum { RISEN = 3 };              /* levels */
 static const double as_good = 2; /* order 2 is taken if it is, up to this */
 
 /* Estimates on one level, worst over the samples: how much the difference
@@ -125,17 +127,34 @@ static double weighed(const estimate *e, int order) {
     return ldexp(e->share_truncation, order / 2) + e->share_rounding;
 }
 
-/* The level of the least error, the longest step of equal ones.  Where steps
-   were good and then are no good at all, longer ones are not looked at: they
-   may be whole periods, and agree with each other that there is no slope. */
-static int best_level(const estimate levels[LEVELS], int order) {
+/* True where steps up to level i leave no doubt that `best` is the level: they were
+   good there and are no good at all now, or all of the last few are far worse, as
+   over ripples of a wide well.  Its own error is that of the next shorter steps, by
+   about the factor of rounding, and its derivatives have the usual size: those of
+   values that cancel happen to agree over steps too short for them. */
+static bool is_passed(const scan_result *l, const estimate levels[LEVELS],
+                      int best, int i) {
+    double error = worst(&levels[best]);
+    if (levels[i].share_truncation > no_good && error < good)
+        return true;
+    if (i < best + RISEN || best == 0 || levels[best].size < l->usual / 2 ||
+        worst(&levels[best - 1]) > consistent * error)
+        return false;
+    for (int k = i - RISEN + 1; k <= i; k++)
+        if (!(levels[k].share_truncation > far_worse * error))
+            return false;
+    return true;
+}
+
+/* The level of the least error, the longest step of equal ones.  Longer ones than
+   those passed are not looked at: they may be whole periods, and agree with each
+   other that there is no slope. */
+static int best_level(const scan_result *l, const estimate levels[LEVELS],
+                      int order) {
     int best = 0;
-    for (int i = 1; i < LEVELS; i++) {
+    for (int i = 1; i < LEVELS && !is_passed(l, levels, best, i); i++)
         if (weighed(&levels[i], order) <= weighed(&levels[best], order))
             best = i;
-        if (levels[i].share_truncation > no_good && worst(&levels[best]) < good)
-            break;
-    }
     return best;
 }
 
@@ -158,7 +177,8 @@ static bool blind(const estimate *best) {
 
 static nevh__step choose(const nevh_gradient *g, const scan_result *l,
                          double unit) {
-    int two = best_level(l->two, 2), full = best_level(l->full, g->order);
+    int two = best_level(l, l->two, 2);
+    int full = best_level(l, l->full, g->order);
     const estimate *best = &l->full[full];
     if (blind(best))
         return (nevh__step){

@@ -221,7 +221,28 @@ TEST(charges_at_rest_pass_and_wrong_fields_do_not) {
     }
 }
 
-/* Of (exp(x) - 1 - x)/x^2, which cancels, the slope as it is and by 1e-3 less. */
+/* Short ripples of a wide well, the slope as it is and less by a part. */
+static double rippled(double t, const double q[], const double p[],
+                      const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    return q[0] * q[0] / 2 - 1e-4 * cos(1e3 * q[0]);
+}
+
+static void rippled_gradient(size_t width, const double t[], const double q[],
+                             const double p[], const double c[],
+                             const void *params, double dq[], double dp[]) {
+    const double *factor = params;
+    (void)t, (void)p, (void)c, (void)dp;
+    for (size_t i = 0; dq && i < width; i++)
+        dq[i] = *factor * (q[i] + 0.1 * sin(1e3 * q[i]));
+}
+
+static const nevh_term rippled_term = {.effect = "rippled",
+                                       .nq = 1,
+                                       .value = rippled,
+                                       .gradient = rippled_gradient};
+
+/* Of (exp(x) - 1 - x)/x^2, which cancels, by 1e-3 less. */
 static double cancelling(double t, const double q[], const double p[],
                          const double c[], const void *params) {
     (void)t, (void)p, (void)c, (void)params;
@@ -240,13 +261,15 @@ static void cancelling_gradient(size_t width, const double t[],
     }
 }
 
-static int status_of_cancelling(double factor, double at) {
+static const nevh_term cancelling_term = {.effect = "cancelling",
+                                          .nq = 1,
+                                          .value = cancelling,
+                                          .gradient = cancelling_gradient};
+
+static int status_of(nevh_term term, double factor, double at) {
     nevh_system *s = nevh_system_new(1);
-    nevh_system_add(s, &(nevh_term){.effect = "cancelling",
-                                    .nq = 1,
-                                    .value = cancelling,
-                                    .gradient = cancelling_gradient,
-                                    .params = &factor});
+    term.params = &factor;
+    nevh_system_add(s, &term);
     nevh_field *f = planned_exact(s, &at, (const double[]){0});
     int status = nevh_field_status(f);
     nevh_field_free(f);
@@ -256,10 +279,18 @@ static int status_of_cancelling(double factor, double at) {
 
 TEST(formulas_that_cancel_pass_and_wrong_slopes_do_not) {
     for (double at = 2e-4; at < 3; at *= 1.37)
-        ck_assert_msg(!status_of_cancelling(1, at), "%g", at);
+        ck_assert_msg(!status_of(cancelling_term, 1, at), "%g", at);
     for (double at = 0.01; at < 3; at *= 1.37)
-        ck_assert_msg(status_of_cancelling(0.999, at) == NEVH_ENOGRAD, "%g",
+        ck_assert_msg(status_of(cancelling_term, 0.999, at) == NEVH_ENOGRAD,
+                      "%g", at);
+}
+
+TEST(ripples_pass_and_wrong_slopes_do_not) {
+    for (double at = 4; at < 100; at *= 1.07) {
+        ck_assert_msg(!status_of(rippled_term, 1, at), "%g", at);
+        ck_assert_msg(status_of(rippled_term, 0.2, at) == NEVH_ENOGRAD, "%g",
                       at);
+    }
 }
 
 /* Formulas that cancel near 0, until nothing but rounding is left of them; and some

@@ -423,3 +423,50 @@ TEST_RANGE(a_distant_force_does_not_scale_momenta, 3, 12) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
+
+/* Ripples of a wide well, or of a slope, of 2 to 20 percent of its force: longer
+   steps agree with each other that there are none. */
+typedef struct {
+    double x, quadratic, linear, ripple, wave;
+} rippled;
+static const rippled ripples[] = {
+    {5.001, 1, 0, 1e-3, 100}, {5.001, 1, 0, 1e-4, 1e3},
+    {5.001, 0, 1, 1e-3, 100}, {5.001, 0, 1, 1e-4, 1e3},
+    {5.001, 1, 0, 1e-2, 100}, {5.001, 1, 0, 1e-4, 100},
+    {30.3, 1, 0, 1e-2, 1e3},  {1.3, 1, 0, 1e-3, 300},
+};
+enum { RIPPLES = sizeof ripples / sizeof *ripples };
+
+static double rippled_value(double t, const double q[], const double p[],
+                            const double c[], const void *params) {
+    const rippled *r = params;
+    (void)t, (void)p, (void)c;
+    return r->quadratic * q[0] * q[0] / 2 + r->linear * q[0] -
+           r->ripple * cos(r->wave * q[0]);
+}
+
+TEST_EACH(ripples_are_not_stepped_over, RIPPLES) {
+    const rippled *r = &ripples[_i];
+    nevh_system *s = nevh_system_new(1);
+    add_kinetic(s, 1, (const double[]){1});
+    nevh_system_add(s, &(nevh_term){.effect = "rippled",
+                                    .nq = 1,
+                                    .value = rippled_value,
+                                    .params = r});
+    for (int g = 0; g < 4; g++) {
+        nevh_options o = {.gradient = nevh_gradients()[g],
+                          .q = &r->x,
+                          .p = (const double[]){0}};
+        nevh_field *f = nevh_field_new(s, &o);
+        for (double x = r->x - 1; x < r->x + 0.1; x += 0.0137) {
+            double dq, p = 0;
+            double slope = r->quadratic * x + r->linear;
+            double whole = slope + r->ripple * r->wave * sin(r->wave * x);
+            ck_assert_int_eq(nevh_field_gradient(f, 1, &now, &x, &p, &dq, NULL),
+                             0);
+            ck_assert_double_lt(fabs(dq - whole), 1e-6 * slope);
+        }
+        nevh_field_free(f);
+    }
+    nevh_system_free(s);
+}

@@ -37,6 +37,13 @@ error '$1 == ""'
 has '^# no state errors: H jumps by 2 near t = 0\.33333.*, in effect "V"'
 scene 'tanh(x/0.05)' 'x = -1, 3'
 error '$1 > 0 && $1 < 0.5'
+# Elsewhere it is a harmonic spring, whose solution is known; a jump has its height.
+scene 'x^2/2 + 0.3*tanh((x-0.3)*1e4)'
+error '$1 > 0.01 && $1 < 1'
+lacks 'H jumps|exact solution'
+scene 'x^2/2 + 0.3*sign(x-0.2)'
+error '$1 == ""'
+has '^# no state errors: H jumps by -0\.6 near t = 1\.369'
 # A jump above rounding, in one effect of several.
 printf '[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = x^2/2 + x^4/8
 step = 1e-5*floor(3*x)\n[run]\nt_end = 5\ndt = 0.1\nintegrators = gauss4\n' \
