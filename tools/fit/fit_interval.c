@@ -163,7 +163,6 @@ static double find_end(profile *p, size_t k, int side) {
 static void take_profile(profile *p) {
     fitting *f = p->fit;
     double kept = f->tolerance;
-    f->profiled = true;
     for (size_t k = 0; k < f->count; k++) /* so that sums are right to 1e-3 */
         f->tolerance =
             fmin(f->tolerance * 1e5,
@@ -217,7 +216,8 @@ gsl_vector *fit_intervals(fitting *f, const gsl_vector *x,
                  .rise = wide * wide * variance};
     gsl_multifit_nlinear_covar(jacobian, 0, c);
     take_linear(&p, variance);
-    if (!is_quadratic(&p))
+    f->profiled = !is_quadratic(&p);
+    if (f->profiled)
         take_profile(&p);
     for (size_t k = 0; longer && k < f->count; k++) {
         f->item[k].low -= fabs(f->item[k].moved);

@@ -74,9 +74,9 @@ int fit_begin(fitting *, const options *);
    returns  whether there is one; else `why` says more */
 bool fit_orbit(fitting *, const double x[], double residual[]);
 
-/* fit_scheme.c: orbits of smaller errors.
-   level    from 0 on: tolerances of dop853; with `stepwise`, of the given scheme
-            at shorter steps
+/* fit_scheme.c: orbits of smaller errors than those of now.
+   level    from 0 on: dop853, then its smaller tolerances; with `stepwise`, shorter
+            steps of the scheme of now
    returns  false where there is none */
 bool fit_scheme_finer(const fitting *, size_t level, bool stepwise,
                       fit_scheme *);

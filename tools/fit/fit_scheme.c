@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit_private.h"
 #include <math.h>
+#include <nevh/confirm.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,29 +10,43 @@ static bool is_dop853(const char *integrator) {
     return strcmp(integrator, "dop853") == 0;
 }
 
-/* Dormand and Prince's scheme of order 8 takes any H, and friction at its order. */
-static bool finer_tolerance(const fitting *f, size_t level, fit_scheme *finer) {
-    static const double tolerance[] = {1e-9, 1e-11, 1e-13};
-    enum { LEVELS = sizeof tolerance / sizeof *tolerance };
-    size_t first = 0;
-    while (is_dop853(f->given.integrator) && first < LEVELS &&
-           tolerance[first] >= f->given.tolerance)
-        first++;
-    if (first + level >= LEVELS)
-        return false;
-    *finer = (fit_scheme){"dop853", f->given.dt, tolerance[first + level]};
-    return true;
+/* The scheme that nevh_finer finds for the orbit as it is planned now. */
+static bool ask_finer(const fitting *f, nevh_finer_kind kind,
+                      fit_scheme *finer) {
+    const plan *p = f->plan;
+    bool transformed;
+    const nevh_integrator *scheme =
+        plan_scheme(f->now.integrator, &transformed);
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    o.transform = plan_transform(p, f->now.integrator);
+    o.tolerance =
+        nevh_integrator_adaptive(scheme) ? f->now.tolerance : o.tolerance;
+    nevh_finer *found = tool_owned(nevh_finer_new(
+        p->system, &(nevh_finer_question){
+                       .integrator = scheme,
+                       .options = &o,
+                       .t0 = p->run->t_start,
+                       .dt = f->now.dt,
+                       .steps = (size_t)fmax(plan_steps(p, f->now.dt), 1),
+                       .kinds = kind}));
+    bool good = !nevh_finer_status(found);
+    if (good)
+        *finer = (fit_scheme){
+            kind == NEVH_FINER_STEPS
+                ? f->now.integrator
+                : nevh_integrator_name(nevh_finer_integrator(found)),
+            nevh_finer_dt(found), nevh_finer_options(found)->tolerance};
+    nevh_finer_free(found);
+    return good;
 }
 
 bool fit_scheme_finer(const fitting *f, size_t level, bool stepwise,
                       fit_scheme *finer) {
-    enum { LEVELS = 3, SHORTER = 4 };
-    if (!stepwise)
-        return finer_tolerance(f, level, finer);
-    *finer = f->given;
-    finer->dt *= pow(SHORTER, -(double)(level + 1));
-    finer->tolerance *= pow(SHORTER, -2 * (double)(level + 1));
-    return level < LEVELS;
+    enum { LEVELS = 2, HALVES = 6 };
+    bool by_steps = stepwise || level || is_dop853(f->now.integrator);
+    return level < (stepwise ? HALVES : LEVELS) &&
+           ask_finer(f, by_steps ? NEVH_FINER_STEPS : NEVH_FINER_ADAPTIVE,
+                     finer);
 }
 
 bool fit_is_given(const fitting *f) {

@@ -224,11 +224,11 @@ static change compare_scheme(fitting *f, const attempt *a,
 
 /* Levels of smaller errors, until the next one changes nothing.
    stepwise  as fit_scheme_finer has it
-   returns   false where a level has no orbit */
+   returns   false where a level has no orbit, or there is none */
 static bool refine(fitting *f, attempt *a, bool stepwise) {
     fit_scheme finer;
-    for (size_t level = 0; fit_scheme_finer(f, level, stepwise, &finer);
-         level++) {
+    size_t level = 0;
+    for (; fit_scheme_finer(f, level, stepwise, &finer); level++) {
         fit_scheme before = f->now;
         if (!determined(f, gsl_multifit_nlinear_jac(a->w)))
             return true;
@@ -246,7 +246,7 @@ static bool refine(fitting *f, attempt *a, bool stepwise) {
         if (a->status)
             return true;
     }
-    return true;
+    return level > 0;
 }
 
 /* Data that the given scheme itself made: its residuals are rounding, and those of
