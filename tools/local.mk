@@ -58,6 +58,7 @@ tools_nevh_SOURCES = \
 	tools/experiment/match.c \
 	tools/experiment/diagnostics.c \
 	tools/experiment/shadow.c \
+	tools/experiment/smoothness.c \
 	tools/inspect/effects.c \
 	tools/orbit/trajectory.h \
 	tools/orbit/lines.c \
@@ -69,7 +70,6 @@ tools_nevh_SOURCES = \
 	tools/experiment/stability.c \
 	tools/search/suggested_step.c \
 	tools/experiment/trial_run.c \
-	tools/inspect/smoothness.c \
 	tools/hard/hard_cases.h \
 	tools/hard/hard_cases.c \
 	tools/hard/hard.c \

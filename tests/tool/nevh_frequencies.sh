@@ -31,6 +31,26 @@ rows | awk -F, 'function abs(x) { return x < 0 ? -x : x }
         if (d > 2*$6 || $6 > 2*d + 1e-9 || $2 != "rkn6b" && $6 < 100*$11) wrong = 1 }
     END { exit wrong || n != 3 }' || fails "errors are others"
 
+# H with a kink: errors are no powers of the step, and steps of which an integer number
+# is a period give the same frequency as their halves, which is a wrong one.
+cat >$work/kink.nevh <<'END'
+[coordinates]
+x = 0.7
+[effects]
+kinetic = p_x^2/2
+well = abs(x)
+[run]
+t_end = 400
+dt = 0.1
+END
+for dt in 0.1 0.13; do
+    exits 0 frequencies $work/kink.nevh --dt $dt --integrators midpoint,gauss4,verlet \
+        --format csv
+    rows | awk -F, 'function abs(x) { return x < 0 ? -x : x }
+        $4 == 1 { d = abs($5 - 6.283185307179586/(4*sqrt(1.4))); n++
+            if (!(d <= 1.1*$6)) wrong = 1 }
+        END { exit wrong || n != 3 }' || fails "errors do not hold the frequency"
+done
 # One that goes round: what is quasi-periodic is its cosine.
 exits 0 frequencies pendulum-rotating --integrators gauss8 --t-end 200
 has '^ gauss8  .*cos\(phi\)  *1 '

@@ -309,15 +309,35 @@ const nevh_system *plan_transform(const plan *p, const char *name) {
                : NULL;
 }
 
-nevh_stepper *plan_stepper(const plan *p, const char *name) {
+static nevh_options options_of(const plan *p, const char *name,
+                               const nevh_integrator **scheme) {
     nevh_options o = plan_options(p, p->gradients.item[0]);
     bool transformed;
-    const nevh_integrator *scheme = plan_scheme(p, name, &transformed);
+    *scheme = plan_scheme(p, name, &transformed);
     o.transform = plan_transform(p, name);
-    if (nevh_integrator_adaptive(scheme) && p->tolerances)
+    if (nevh_integrator_adaptive(*scheme) && p->tolerances)
         o.tolerance = p->tolerance[0];
     o.steps_foreseen = p->dts ? plan_steps(p, p->dt[0]) : 0;
+    return o;
+}
+
+nevh_stepper *plan_stepper(const plan *p, const char *name) {
+    const nevh_integrator *scheme;
+    nevh_options o = options_of(p, name, &scheme);
     return nevh_stepper_new(p->system, scheme, &o);
+}
+
+nevh_finer *plan_finer(const plan *p, const char *name, nevh_finer_kind kind) {
+    const nevh_integrator *scheme;
+    nevh_options o = options_of(p, name, &scheme);
+    const nevh_finer_question q = {.integrator = scheme,
+                                   .options = &o,
+                                   .t0 = p->run->t_start,
+                                   .dt = p->dt[0],
+                                   .steps =
+                                       (size_t)fmax(plan_steps(p, p->dt[0]), 1),
+                                   .kinds = kind};
+    return tool_owned(nevh_finer_new(p->system, &q));
 }
 
 /* The first from there on that fits; NULL: none does. */

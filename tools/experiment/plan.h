@@ -70,6 +70,9 @@ const nevh_integrator *plan_scheme_at(const plan *, size_t i);
 const nevh_system *plan_transform(const plan *, const char *name);
 /* The integrator of that name, planned for the first gradient. */
 nevh_stepper *plan_stepper(const plan *, const char *name);
+/* The finer run of that kind, of the whole run with the first dt and tolerance; to be
+   freed. */
+nevh_finer *plan_finer(const plan *, const char *integrator, nevh_finer_kind);
 /* The first integrator that fits, those of --transform before others, planned
    for the first gradient; NULL, with a message, when none does.
    name  out: what the plan calls it; NULL: not asked for */

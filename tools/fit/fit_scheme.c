@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit_private.h"
 #include <math.h>
-#include <nevh/confirm.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,29 +12,14 @@ static bool is_dop853(const char *integrator) {
 /* The scheme that nevh_finer finds for the orbit as it is planned now. */
 static bool ask_finer(const fitting *f, nevh_finer_kind kind,
                       fit_scheme *finer) {
-    const plan *p = f->plan;
-    bool transformed;
-    const nevh_integrator *scheme =
-        plan_scheme(f->now.integrator, &transformed);
-    nevh_options o = plan_options(p, p->gradients.item[0]);
-    o.transform = plan_transform(p, f->now.integrator);
-    o.tolerance =
-        nevh_integrator_adaptive(scheme) ? f->now.tolerance : o.tolerance;
-    nevh_finer *found = tool_owned(nevh_finer_new(
-        p->system, &(nevh_finer_question){
-                       .integrator = scheme,
-                       .options = &o,
-                       .t0 = p->run->t_start,
-                       .dt = f->now.dt,
-                       .steps = (size_t)fmax(plan_steps(p, f->now.dt), 1),
-                       .kinds = kind}));
+    const char *name = f->now.integrator;
+    nevh_finer *found = plan_finer(f->plan, name, kind);
     bool good = !nevh_finer_status(found);
+    if (good && kind != NEVH_FINER_STEPS)
+        name = nevh_integrator_name(nevh_finer_integrator(found));
     if (good)
-        *finer = (fit_scheme){
-            kind == NEVH_FINER_STEPS
-                ? f->now.integrator
-                : nevh_integrator_name(nevh_finer_integrator(found)),
-            nevh_finer_dt(found), nevh_finer_options(found)->tolerance};
+        *finer = (fit_scheme){name, nevh_finer_dt(found),
+                              nevh_finer_options(found)->tolerance};
     nevh_finer_free(found);
     return good;
 }

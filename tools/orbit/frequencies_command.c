@@ -1,8 +1,10 @@
 /* nevh frequencies: the lines of a spectrum, by integrator and observable.
 
-   Those of a run at half the step tell how much of a frequency is the scheme's.
+   Those of a run at half the step tell how much of a frequency is the scheme's, and of
+   one by dop853 where H is not smooth, and errors are no powers of the step.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
+#include "experiment/pace.h"
 #include "experiment/plan.h"
 #include <math.h>
 #include <nevh/frequencies.h>
@@ -34,15 +36,26 @@ typedef struct {
     observed *all;
     size_t count;
     double begin, end; /* of the run */
-    size_t finer;      /* steps between two samples, of dt / finer each */
+    size_t finer;      /* steps between two samples */
+    bool smooth;       /* H is on its way, as far as is known */
     int failed;        /* a formula's status */
     table *table;
     list words;
     int worst;
 } frequencies_job;
 
-/* Finds the lengths over which H varies in the coordinates that are observed. */
-static void find_lengths(frequencies_job *j) {
+/* On the orbit, or round its start where H has no series. */
+static bool is_smooth(const plan *p, const nevh_probe *probe) {
+    char *why = NULL;
+    smoothness on_way = smoothness_on_way(p, &why);
+    free(why);
+    return on_way == SMOOTHNESS_UNKNOWN && !nevh_probe_status(probe)
+               ? nevh_probe_finding(probe, NEVH_IS_SMOOTH).holds
+               : on_way != SMOOTHNESS_NONE;
+}
+
+/* Lengths are those of the coordinates that are observed. */
+static void probe_all(frequencies_job *j) {
     const plan *p = &j->plan;
     nevh_options o = plan_options(p, p->gradients.item[0]);
     nevh_probe *probe = nevh_probe_new(p->system, &o);
@@ -51,6 +64,7 @@ static void find_lengths(frequencies_job *j) {
     for (size_t i = 0; length && i < j->count; i++)
         if (!j->all[i].formula)
             j->all[i].length = length[j->all[i].k];
+    j->smooth = is_smooth(p, probe);
     nevh_probe_free(probe);
 }
 
@@ -72,7 +86,7 @@ static int choose(frequencies_job *j, const options *o) {
     for (size_t i = 0; i < j->count; i++)
         if (!j->all[i].samples)
             return tool_refuse("out of memory");
-    find_lengths(j);
+    probe_all(j);
     return o->observable && nevh_scene_set_judged(p->scene, o->observable)
                ? scene_report(p->scene, o)
                : TOOL_OK;
@@ -97,42 +111,49 @@ static int take(void *data, size_t step, double t, const double q[],
     return 0;
 }
 
-/* A run at dt / finer.
+/* Samples along a run.
+   dt       of its steps
+   watch    of its energy; NULL: not looked at
    why      out: the reason, to be freed
+   returns  a status */
+static int sample(frequencies_job *j, nevh_stepper *s, double dt,
+                  nevh_energy *watch, char **why) {
+    const plan *p = &j->plan;
+    double *q = tool_allocate(2 * p->n, sizeof *q), *m = q + p->n, stopped;
+    nevh_observer observers[] = {{take, j, 1}, {nevh_energy_observe, watch, 1}};
+    j->failed = 0;
+    j->finer = (size_t)lround(p->dt[0] / dt);
+    for (size_t i = 0; i < j->count; i++)
+        nevh_spectral_samples_restart(j->all[i].samples);
+    memcpy(q, p->q, p->n * sizeof *q);
+    memcpy(m, p->p, p->n * sizeof *q);
+    int status = plan_run(p, s, dt, q, m, observers, watch ? 2 : 1, &stopped);
+    *why = status  ? plan_why(p, j->failed ? nevh_scene_message(p->scene)
+                                           : nevh_stepper_message(s))
+            : watch ? plan_doubts(p, watch, status)
+                   : NULL;
+    free(q);
+    return *why && !status ? NEVH_EFAILED : status;
+}
+
+/* why      out: the reason, to be freed
    returns  0; -1 refused; else a status */
-static int run(frequencies_job *j, const char *integrator, size_t finer,
-               char **why) {
+static int run(frequencies_job *j, const char *integrator, char **why) {
     const plan *p = &j->plan;
     nevh_stepper *s = plan_stepper(p, integrator);
     bool transformed;
     const nevh_integrator *scheme = plan_scheme(p, integrator, &transformed);
     bool own = transformed || nevh_integrator_own_time(scheme);
-    double *q = tool_allocate(2 * p->n, sizeof *q), *m = q + p->n, stopped;
     nevh_energy *watch = plan_watch(p);
-    nevh_observer observers[] = {{take, j, 1}, {nevh_energy_observe, watch, 1}};
     int status = nevh_stepper_status(s);
-    j->failed = 0;
-    j->finer = finer;
-    for (size_t i = 0; i < j->count; i++)
-        nevh_spectral_samples_restart(j->all[i].samples);
-    memcpy(q, p->q, p->n * sizeof *q);
-    memcpy(m, p->p, p->n * sizeof *q);
     if (status || own) {
         *why = text_print("%s", status ? nevh_stepper_message(s)
                                        : "it chooses times of its own, and "
                                          "samples are at equal times");
         status = -1;
-    } else {
-        status = plan_run(p, s, p->dt[0] / (double)finer, q, m, observers,
-                          finer == 1 ? 2 : 1, &stopped);
-        *why = status ? plan_why(p, j->failed ? nevh_scene_message(p->scene)
-                                              : nevh_stepper_message(s))
-               : finer == 1 ? plan_doubts(p, watch, status)
-                            : NULL;
-        status = *why && !status ? NEVH_EFAILED : status;
-    }
+    } else
+        status = sample(j, s, p->dt[0], watch, why);
     nevh_energy_free(watch);
-    free(q);
     nevh_stepper_free(s);
     return status;
 }
@@ -320,39 +341,58 @@ static double nearest(const spectrum *of, const nevh_spectral_line *l) {
     return best;
 }
 
-/* An error of h^order is the change at half the step, and a little more. */
-static void compare_lines(spectrum *of, const spectrum *finer, int order) {
-    double part = 1 - pow(2, -order);
+/* part  of an error that the finer run does not have */
+static void compare_lines(spectrum *of, const spectrum *finer, double part) {
     for (size_t k = 0; k < of->found; k++) {
         const nevh_spectral_line *l = &of->line[k];
         double changed = fabs(nearest(finer, l) - l->frequency) / part;
-        of->error[k] = isnan(changed) ? NAN : hypot(changed, l->error);
+        double error = isnan(changed) ? NAN : hypot(changed, l->error);
+        if (!(error < of->error[k]))
+            of->error[k] = error;
     }
 }
 
-static int order_of(const frequencies_job *j, const char *integrator) {
-    nevh_stepper *s = plan_stepper(&j->plan, integrator);
-    int order = nevh_stepper_order(s);
-    nevh_stepper_free(s);
-    return order;
+/* An error of h^order, or of a tolerance, is the change by the finer run, and a
+   little more. */
+static double part_of(nevh_finer *f, double shorter) {
+    static const double tolerance = 1. / 16; /* as nevh_finer has it */
+    if (nevh_finer_how(f) != NEVH_FINER_STEPS)
+        return 1;
+    int order = nevh_stepper_order(nevh_finer_stepper(f));
+    return 1 - (shorter < 1 ? pow(shorter, order) : tolerance);
 }
 
-/* The errors of the lines that were found. */
-static int confirm(frequencies_job *j, const char *integrator, spectrum *all) {
-    char *why = NULL;
-    int order = order_of(j, integrator), status = TOOL_OK;
-    bool ran = !run(j, integrator, 2, &why);
+/* The errors of the lines that were found, by a finer run of that kind. */
+static int confirm_by(frequencies_job *j, const char *integrator,
+                      nevh_finer_kind kind, spectrum *all) {
+    const plan *p = &j->plan;
+    nevh_finer *f = plan_finer(p, integrator, kind);
+    nevh_stepper *s = nevh_finer_stepper(f);
+    double dt = fmin(nevh_finer_dt(f), p->dt[0]);
+    double part = s ? part_of(f, dt / p->dt[0]) : 1;
+    char *why = s ? NULL : text_print("%s", nevh_finer_message(f));
+    bool ran = s && !sample(j, s, dt, NULL, &why);
+    int status = TOOL_OK;
     if (!ran)
-        list_print(&j->words,
-                   "%s: errors are not known: at half the step it fails: %s",
-                   integrator, why);
+        list_print(
+            &j->words, "%s: errors are not known: %s it fails: %s", integrator,
+            kind == NEVH_FINER_STEPS ? "with finer steps" : "by dop853", why);
     free(why);
-    for (size_t i = 0; ran && !status && i < j->count; i++) {
+    for (size_t i = 0; !status && i < j->count; i++) {
         spectrum finer = {0};
-        status = find_spectrum(j, integrator, &j->all[i], false, &finer);
-        compare_lines(&all[i], &finer, order);
+        if (ran)
+            status = find_spectrum(j, integrator, &j->all[i], false, &finer);
+        compare_lines(&all[i], &finer, part);
         free(finer.name);
     }
+    nevh_finer_free(f);
+    return status;
+}
+
+static int confirm(frequencies_job *j, const char *integrator, spectrum *all) {
+    int status = confirm_by(j, integrator, NEVH_FINER_STEPS, all);
+    if (!status && !j->smooth)
+        status = confirm_by(j, integrator, NEVH_FINER_ADAPTIVE, all);
     return status;
 }
 
@@ -362,8 +402,6 @@ static int analyse(frequencies_job *j, const options *o,
     size_t lines = 0;
     int status = TOOL_OK;
     for (size_t i = 0; !status && i < j->count; i++) {
-        for (size_t k = 0; k < LINES; k++)
-            all[i].error[k] = NAN;
         status = find_spectrum(j, integrator, &j->all[i], true, &all[i]);
         lines += all[i].found;
     }
@@ -384,7 +422,7 @@ static int analyse(frequencies_job *j, const options *o,
 static int run_and_analyse(frequencies_job *j, const options *o,
                            const char *integrator) {
     char *why = NULL;
-    int status = run(j, integrator, 1, &why);
+    int status = run(j, integrator, &why);
     if (status)
         list_print(&j->words, "%s %s: %s", integrator,
                    status < 0 ? "refused" : "failed", why);
@@ -413,9 +451,11 @@ static void note(const frequencies_job *j, const options *o, list *notes) {
                p->dt[0], p->dts > 1 ? ", the first of the list" : "");
     list_print(notes, "gradient: %s%s", p->gradients.item[0],
                p->gradients.count > 1 ? ", the first of the list" : "");
-    list_add(notes,
-             "error: of the frequency, the scheme's own included, from a "
-             "run at half the step; resolution: without that");
+    list_print(notes,
+               "error: of the frequency, the scheme's own included, from a "
+               "run at half the step, or at a sixteenth of the tolerance%s; "
+               "resolution: without that",
+               j->smooth ? "" : ", and one by dop853, as H is not smooth");
 }
 
 static int analyse_all(frequencies_job *j, const options *o) {

@@ -1,4 +1,4 @@
-/* nevh check: whether H is smooth on the way of its orbit.
+/* nevh: whether H is smooth on the way of its orbit.
 
    Differences of H tell of a kink that is within their reach, and take a
    singularity that the orbit only passes for one.  A Taylor series watches all
