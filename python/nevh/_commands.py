@@ -9,6 +9,7 @@ import functools
 import inspect
 import json
 import keyword
+import math
 import os
 import re
 import signal
@@ -228,7 +229,7 @@ def _option(option, name, value, folder):
                                           for v in value) else list(value)
         return [part for line in lines for part in (word, line)]
     if kind == "file":
-        if hasattr(value, "keys"):  # columns: of a dictionary or a data frame
+        if name == "data" and not isinstance(value, (str, os.PathLike)):
             value = _data_file(value, os.path.join(folder, "data.csv"))
         return [word, os.fspath(value)]
     if not isinstance(value, (str, os.PathLike)) and not _is_row(value) and \
@@ -237,17 +238,35 @@ def _option(option, name, value, folder):
     return [word, _joined(name, value)]
 
 
-def _data_file(columns, path):
-    """Measured columns as the CSV that the command reads."""
-    names = list(columns.keys())
-    rows = list(zip(*(list(columns[name]) for name in names)))
-    if any(len(columns[name]) != len(rows) for name in names):
-        raise Refused("data: the columns %s are not of one length" % ", ".join(names))
+def _data_file(data, path):
+    """Measured columns, of a dictionary, a data frame, a Table or a structured array, as
+    the CSV that the command reads."""
+    names = getattr(data, "columns", None) if isinstance(data, Table) else \
+        data.keys() if hasattr(data, "keys") else getattr(
+            getattr(data, "dtype", None), "names", None)
+    if names is None or not len(names):
+        raise Refused("data is a file or columns, {name: values} or a data frame, not %.80r"
+                      % (data,))
+    columns = {_text("the name of a column of data", name): data[name] for name in names}
+    for name, column in columns.items():
+        if isinstance(column, str) or not hasattr(column, "__len__"):
+            raise Refused("data: %s = %.80r is no column" % (name, column))
+    if len({len(column) for column in columns.values()}) > 1:
+        raise Refused("data: the columns %s are not of one length" % ", ".join(columns))
+    cells = [[_measured(name, value) for value in column]
+             for name, column in columns.items()]
     with open(path, "w", encoding="utf-8") as file:
-        file.write(",".join(names) + "\n")
-        file.writelines(",".join("" if value != value else repr(float(value))
-                                 for value in row) + "\n" for row in rows)
+        file.writelines(",".join(row) + "\n" for row in [list(columns), *zip(*cells)])
     return path
+
+
+def _measured(name, value):
+    """A measured number as a cell of a CSV, which is empty where there is none."""
+    try:
+        number = math.nan if value is None else float(value)
+    except (TypeError, ValueError):
+        raise Refused("data: %s has %.80r, which is no number" % (name, value)) from None
+    return "" if math.isnan(number) else repr(number)
 
 
 def _scene_words(of, source, given, folder, coordinates, sections=""):
@@ -277,6 +296,13 @@ def _scene_words(of, source, given, folder, coordinates, sections=""):
     return words, path, made.name
 
 
+def _sections(own):
+    """The sections of integrators, each once: one that is composed has that of its parts."""
+    return "\n".join(dict.fromkeys(
+        "[integrator " + section.strip() + "\n" for one in own
+        for section in one.text.split("[integrator ")[1:]))
+
+
 def _words(of, given, folder):
     """The arguments of a command for those of its function, and the names of scenes."""
     listed, operand = _list()[1], of["operand"]
@@ -299,7 +325,7 @@ def _words(of, given, folder):
             os.mkdir(place)
             extra, path, name = _scene_words(of, source, given if not many else dict(given),
                                              place, coordinates,
-                                             "\n".join(one.text for one in own))
+                                             _sections(own))
             words, operands, names = words + extra, operands + [path], names + [name]
         if many:
             for name in _of_scenes:

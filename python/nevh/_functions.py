@@ -95,11 +95,15 @@ class _Subject:
         self.scene = self.own = None
         self.calls_python = False
         self.trap = _Trap()
+        address = None if isinstance(H, (Scene, str, os.PathLike)) else _address(H)
+        if address is None and params is not None:
+            raise Refused("params is for a function in C; give parameters={name: value}")
         if isinstance(H, (Scene, str, os.PathLike)):
             self._take(_scene(H, parameters, coordinates, with_effects,
                               without_effects))
             return
-        address = _address(H)
+        if address is not None and (args or parameters):
+            raise Refused("a function in C takes params=, neither args nor parameters")
         if address is None and not callable(H):
             raise TypeError("H is a text, a Scene, a function or the address of one, "
                             "not %r" % type(H).__name__)

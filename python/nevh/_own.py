@@ -52,9 +52,9 @@ class Integrator:
                  c: Sequence[Any] | None = None, compose: Any = None,
                  step: Callable[..., Any] | None = None) -> None:
         self.name, self.step = _text("name", name), step
-        given = [what for what, value in (("kick and drift", kick or drift),
-                                          ("a and b", a or b), ("compose", compose),
-                                          ("step", step)) if value is not None]
+        given = [what for what, values in (
+            ("kick and drift", (kick, drift)), ("a and b", (a, b)), ("compose", (compose,)),
+            ("step", (step,))) if any(value is not None for value in values)]
         if len(given) != 1:
             raise TypeError("an integrator has kick and drift, or a and b, or compose, or "
                             "step; given are %s" % (" and ".join(given) or "none of them"))
@@ -72,13 +72,19 @@ class Integrator:
                 raise TypeError("compose is {name of an integrator: weights}, not %.80r"
                                 % (compose,))
             (base, weights), = compose.items()
+            if getattr(base, "step", None):
+                raise Refused("%s is a function: a composition takes integrators by numbers"
+                              % base.name)
             lines.append("compose = %s: %s" % (
                 getattr(base, "name", base), _line("step", weights).partition("= ")[2]))
             if isinstance(base, Integrator):
                 lines.insert(0, base.text)
         else:
+            if a is None:
+                raise TypeError("b goes with a, the rows of the table: a=[[0]] is Euler's")
             lines += [line for line in (
-                "a = " + " ; ".join(_line("a", row).partition("= ")[2] for row in a or ()),
+                "a = " + (" ; ".join(_line("a", row).partition("= ")[2] for row in a)
+                          or "0"),
                 _line("b", b), c is not None and _line("c", c)) if line]
         self.text = "\n".join(lines) + "\n"
         self._scene = Scene("[coordinates]\nq = 0\n[effects]\nT = p_q^2/2\n" + self.text)
@@ -183,7 +189,8 @@ def _stepper(mine, field, subject, t, y):
             raise Refused("H is no sum T(p) + V(q): %s takes force(t, q, p) and "
                           "velocity(t, q, p)" % mine.name)
         return zeros if part is None else part
-    takes = len(inspect.signature(mine.step).parameters)
+    takes = sum(one.default is one.empty and one.kind is not one.VAR_KEYWORD
+                for one in inspect.signature(mine.step).parameters.values())
     if takes not in (5, 6):
         raise TypeError("step takes (force, t, q, p, h) or (force, velocity, t, q, p, h), "
                         "not %d arguments" % takes)

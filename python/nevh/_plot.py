@@ -98,11 +98,15 @@ def plot_table(table, x, y, by, ax):
 
 
 def plot_orbit(orbit, x, y, ax):
-    """The Axes with an orbit drawn: names of variables, or t."""
-    rows = {"t": orbit.t, **dict(zip(orbit.names, orbit.y))}
-    half = len(orbit.names) // 2
-    x = x or orbit.names[0]
-    y = y or (orbit.names[1 if half > 1 and x == orbit.names[0] else half])
+    """The Axes with an orbit drawn, or those of an ensemble: names of variables, or t."""
+    half = len(orbit.y) // 2
+    q = ["q"] if half == 1 else ["q[%d]" % (k + 1) for k in range(half)]
+    names = orbit.names or q + ["p_" + name for name in q]  # a function in C has no names
+    ensemble = getattr(orbit.y, "ndim", 2) == 3
+    rows = {"t": orbit.t, **dict(zip(names, orbit.y.transpose(0, 2, 1) if ensemble
+                                     else orbit.y))}
+    x = x or names[0]
+    y = y or (names[1 if half > 1 and x == names[0] else half])
     ys = [y] if isinstance(y, str) else list(y)
     for name in [x, *ys]:
         if name not in rows:
@@ -115,7 +119,7 @@ def plot_orbit(orbit, x, y, ax):
     ax.set_xlabel(x)
     ax.set_ylabel(", ".join(ys))
     ax.set_title(orbit.method, fontsize="medium")
-    if {x, *ys} <= set(orbit.names[:half]):
+    if {x, *ys} <= set(names[:half]):
         ax.set_aspect("equal")
     if len(ys) > 1:
         ax.legend(fontsize="small")

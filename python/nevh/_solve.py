@@ -335,7 +335,7 @@ def _find(result, plan, h, t_eval, events, dense_output):
 def _solve_members(H, t_span, y0, given):
     """The orbits of an ensemble: y has the shape (2n, members, times)."""
     if np is None:
-        raise ImportError("an ensemble needs NumPy; nevh.sweep gives outcomes of many")
+        raise ImportError("an ensemble needs NumPy")
     try:
         y0 = np.asarray(y0, float)
     except (TypeError, ValueError):
@@ -357,7 +357,7 @@ def _solve_members(H, t_span, y0, given):
     same = {name: runs[0][name] for name in ("method", "dt", "tolerance", "gradient",
                                              "names")}
     first = next((run for run in runs if run.status < 0), runs[0])
-    return Result(
+    result = Result(
         t=runs[0].t[:kept], y=np.stack([run.y[:, :kept] for run in runs], 1),
         nfev=sum(run.nfev for run in runs), status=first.status, success=first.success,
         message=first.message, energy_error=np.array([run.energy_error for run in runs]),
@@ -365,6 +365,8 @@ def _solve_members(H, t_span, y0, given):
         t_reached=np.array([run.t_reached for run in runs]),
         y_reached=np.stack([run.y_reached for run in runs], 1), members=runs, sol=None,
         **same)
+    result._settle = lambda: np.array([run.verdict for run in runs])
+    return result
 
 
 def solve(H: Any, t_span: Sequence[float] | None = None,
@@ -448,6 +450,8 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
     subject = _Subject(H, start, parameters, args,
                        coordinates, with_effects, without_effects, params)
     scene = subject.scene
+    if args and not found and isinstance(H, (Scene, str, os.PathLike)):
+        raise Refused("args are those of a function: give parameters={name: value}")
     if scene and scene.is_formula and (y0 is None or t_span is None):
         raise Refused("a formula needs t_span and y0")
     y = scene.start(y0) if scene else y0
@@ -457,10 +461,16 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
         k = next(k for k, number in enumerate(y[0]) if not math.isfinite(number))
         raise Refused("y0[%d]%s is %g" % (
             k, ", the start of %s," % scene.names[k] if scene else "", y[0][k]))
+    if not abs(t_end - t0) < math.inf or t_end == t0:
+        raise Refused("t_span = %g, %g is no time to go" % (t0, t_end))
+    if gradient:
+        _gradient(gradient)
     if getattr(method, "step", None):
-        if found or dense_output or observe or t_eval is not None or dt is None:
+        if found or dense_output or dt is None or any(one is not None for one in (
+                observe, t_eval, rtol, atol, gradient_step, max_step)):
             raise Refused("%s is a function: it takes dt, and neither t_eval, observe, "
-                          "events nor dense_output" % method.name)
+                          "events, dense_output, rtol, atol, gradient_step nor max_step"
+                          % method.name)
         h = math.copysign(_positive("dt", dt), t_end - t0)
         result = run_steps(method, subject, gradient or ("exact" if scene else "central4"),
                            y, t0, h, list(_times_of_steps(t0, t_end, h)))
@@ -480,18 +490,15 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
                 not scene.is_formula):
             rtol = settings.tolerance[0]
         gradient = gradient or settings.gradient[0].decode()
-    if not t_end - t0 < float("inf") or t_end == t0:
-        raise Refused("t_span = %g, %g is no time to go" % (t0, t_end))
     dt = None if dt is None else _positive("dt", dt)
     methods = [method] if method is not None else _choose(subject, dt, t0, y)
     dt, tolerance = _steps(methods[0], dt, rtol, atol, t_end - t0, y[0])
-    if max_step is not None and dt > _positive("max_step", max_step):
+    if max_step is not None and _real("max_step", max_step) != math.inf and (
+            dt > _positive("max_step", max_step)):
         if not tolerance:
             raise Refused("dt = %g is above max_step = %g" % (dt, max_step))
         dt = float(max_step)
     h = dt if t_end > t0 else -dt
-    if gradient:
-        _gradient(gradient)
     for name in methods:
         of = None if _takes_none(name) else gradient or "central4"
         try:
@@ -513,13 +520,13 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
     keeps_steps = bool(found) or dense_output
     kept = _with_steps(t_eval, _times_of_steps(t0, t_end, h)) if keeps_steps else t_eval
     status, result = _run_plan(plan, t0, t_end, h, kept, y, observe, every)
-    if keeps_steps and len(result.t):
-        _find(result, plan, h, t_eval, found, dense_output)
     names = scene.names if scene else None
     result.update(method=getattr(method, "name", method), dt=dt, tolerance=tolerance,
                   gradient=gradient, names=names)
     try:
         subject.trap.spring()
+        if keeps_steps and len(result.t):
+            _find(result, plan, h, t_eval, found, dense_output)
         if check and status not in (0, _STOPPED):
             _check(status, result.message)
     except BaseException as error:

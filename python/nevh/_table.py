@@ -18,7 +18,7 @@ class Table(list):
     """Rows of a command: dictionaries, whose names are those of its CSV columns.
 
     table["dt"]      a column: an array of NumPy where it has numbers, else a list
-    table[0]         a row
+    table[0]         a row; table[:3] is a Table of the first three
     table.columns    the names of the columns
     table.notes      the lines above the table
     table.words      the sentences below it
@@ -37,6 +37,9 @@ class Table(list):
         self.command = list(command)
 
     def __getitem__(self, key):
+        if isinstance(key, slice):
+            return Table(list.__getitem__(self, key), self.notes, self.words, self.columns,
+                         self.command)
         if not isinstance(key, str):
             return list.__getitem__(self, key)
         if key not in self.columns:

@@ -85,6 +85,8 @@ def test_tables():
     with open("a.csv") as file:
         assert file.readline().strip() == ",".join(table.columns)
     assert "same in all rows" in str(table) and "same in all rows" in table._repr_html_()
+    part = nevh.compare("pendulum", ["verlet", "rk4"], dt=[0.1, 0.05], t_end=5)[1:3]
+    assert isinstance(part, nevh.Table) and len(part["dt"]) == 2 and part.notes
 
 
 def test_scenes_of_effects():
@@ -113,6 +115,12 @@ def test_data_as_columns():
     assert abs(fitted[0]["value"] - 9.7) < 1e-6
     raised(nevh.Refused, "one length", nevh.fit, "pendulum", vary="g",
            data={"t": [0, 1], "phi": [0]})
+    for data in ({"t": [0, 1], "phi": ["a", 0]}, {"t": [0, 1], "phi": 1}, {}, [[0, 1]]):
+        raised(nevh.Refused, "data", nevh.fit, "pendulum", "gauss6", 0.1, data=data, vary="g")
+    orbit = nevh.run("pendulum", "gauss6", 0.1, t_end=3)
+    again = nevh.fit("pendulum", "gauss6", 0.1, data=orbit, vary="g",
+                     parameters={"g": 9.7})
+    assert abs(again[0]["value"] - 9.81) < 0.02, again
 
 
 def test_wrong_calls():
@@ -152,6 +160,11 @@ def test_pictures():
     assert len(axes.lines) == 2 and axes.get_xscale() == "log"
     assert axes.lines[0].get_color() != axes.lines[1].get_color()
     assert nevh.solve("kepler", (0, 5), method="verlet", dt=0.1).plot().get_xlabel() == "x"
+    ensemble = nevh.solve("kepler", (0, 5), [[1, 2], [0, 0], [0, 0], [1, 1]], "verlet", dt=0.1)
+    for x, y in ((None, None), ("t", "x")):
+        lines = ensemble.plot(x, y).lines
+        assert [len(line.get_xdata()) for line in lines] == [len(ensemble.t)] * 2
+        assert lines[1].get_ydata()[-1] == ensemble.y[0 if x else 1, 1, -1]
     raised(nevh.Refused, "give x and y", nevh.reference("pendulum", at=1).plot)
     raised(KeyError, "no column", table.plot, "dt", "err")
 

@@ -796,6 +796,44 @@ def test_ensembles():
            dense_output=True)
 
 
+def test_ensembles_have_verdicts():
+    needs("NumPy")
+    orbits = nevh.solve(PENDULUM, (0, 50), np.array([[0.5, 1], [0, 0]]), "rk4", dt=0.5)
+    alone = [nevh.solve(PENDULUM, (0, 50), [phi, 0], "rk4", dt=0.5) for phi in (0.5, 1)]
+    assert list(orbits.verdict) == [one.verdict for one in alone]
+    assert "verdict" in orbits and list(orbits.energy_error) == [
+        one.energy_error for one in alone]
+
+
+def test_arguments_that_are_not_taken():
+    at = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double, *[
+        ctypes.POINTER(ctypes.c_double)] * 2, ctypes.c_void_p)(
+            lambda t, q, p, _: p[0]**2 / 2 + q[0]**2 / 2)
+    for H, named in ((PENDULUM, {"args": (4,)}), (at, {"args": (4,)}),
+                     (at, {"parameters": {"k": 4}}), (PENDULUM, {"params": 5}),
+                     (lambda t, y: y[1]**2 / 2, {"params": 5})):
+        raised(nevh.Refused, "parameters", nevh.solve, H, (0, 1), [1, 0], "verlet", dt=0.1,
+               **named)
+
+
+def test_events_that_raise_have_the_orbit():
+    def fails(t, y):
+        raise KeyError("mine")
+    try:
+        nevh.solve(PENDULUM, (0, 1), [1, 0], "verlet", dt=0.1, events=fails)
+    except KeyError as error:
+        assert len(error.result.t) == 11 and not error.result.success
+    else:
+        raise AssertionError("nothing was raised")
+
+
+def test_max_step_of_scipy():
+    orbit = nevh.solve(PENDULUM, (0, 1), [1, 0], rtol=1e-9, max_step=math.inf)
+    assert len(orbit.t) == 257
+    raised(nevh.Refused, "max_step", nevh.solve, PENDULUM, (0, 1), [1, 0],
+           max_step=math.nan)
+
+
 def test_max_step():
     short = nevh.solve(PENDULUM, (0, 10), [1, 0], max_step=0.01)
     assert len(short.t) == 1001 and short.dt == 0.01

@@ -112,6 +112,50 @@ def test_functions():
         raised(nevh.Failed, "not finite", nevh.solve, FORMULA, (0, 1), [1, 0], fails, dt=0.1)
 
 
+def test_arrays_are_weights():
+    lists = nevh.Integrator("x", kick=[0.5, 0.5], drift=[1])
+    arrays = nevh.Integrator("x", kick=np.array([0.5, 0.5]), drift=np.array([1.0]))
+    assert lists.order == arrays.order == 2 and arrays.symplectic
+    table = nevh.Integrator("x", a=np.array([[0, 0], [0.5, 0]]), b=np.array([0, 1]))
+    assert table.order == 2 and not table.symplectic
+    assert nevh.Integrator("x", a=[[]], b=[1]).order == 1
+
+
+def test_compared_with_its_parts():
+    leap = nevh.Integrator("leap", kick=["1/2", "1/2"], drift=[1])
+    weight = "1/(2 - 2^(1/3))"
+    triple = nevh.Integrator("triple", compose={leap: [weight, "1 - 2*" + weight, weight]})
+    for own in ([leap, triple], [triple, leap], [leap, triple, leap]):
+        table = nevh.compare("pendulum", own, dt=0.1, t_end=5)
+        errors = dict(zip(table["integrator"], table["max_energy_error"]))
+        assert list(errors) == [one.name for one in dict.fromkeys(own)]
+        assert errors["triple"] < errors["leap"] / 5
+
+
+def test_functions_refuse_what_they_do_not_take():
+    mine = nevh.Integrator("mine", step=leapfrog)
+    for named in ({"rtol": 1e-3}, {"atol": 1e-3}, {"max_step": 0.1}, {"gradient_step": 0.1}):
+        raised(nevh.Refused, "takes dt", nevh.solve, FORMULA, (0, 1), [1, 0], mine, dt=0.1,
+               **named)
+    raised(nevh.Refused, "no gradient 'centrl2'", nevh.solve, FORMULA, (0, 1), [1, 0], mine,
+           dt=0.1, gradient="centrl2")
+    for end in (float("inf"), float("-inf"), float("nan"), 0):
+        for method in (mine, "verlet"):
+            raised(nevh.Refused, "no time to go", nevh.solve, FORMULA, (0, end), [1, 0],
+                   method, dt=0.1)
+    raised(nevh.Refused, "is a function", nevh.sweep, "pendulum", {"phi": [1, 2]},
+           "energy_error", mine, dt=0.1, t_end=1)
+    raised(nevh.Refused, "is a function", nevh.Integrator, "x", compose={mine: [1]})
+
+
+def test_step_with_a_default():
+    def step(force, t, q, p, h, parts=1):
+        return leapfrog(force, t, q, p, h)
+    made = nevh.solve(FORMULA, (0, 5), [1, 0], nevh.Integrator("x", step=step), dt=0.1)
+    exact = nevh.solve(FORMULA, (0, 5), [1, 0], "verlet", dt=0.1)
+    assert abs(made.y - exact.y).max() < 1e-13
+
+
 def test_wrong():
     for kind, text, named in (
             (TypeError, "none of them", {}), (TypeError, "drift is a list", {"kick": [1]}),
@@ -119,6 +163,7 @@ def test_wrong():
             (TypeError, "kick is a list", dict(kick="x", drift=[1])),
             (nevh.Refused, "row 1 of a", dict(a=[[1, 2]], b=[1])),
             (TypeError, "compose is", dict(compose=5)),
+            (TypeError, "b goes with a", dict(b=[1])),
             (nevh.Refused, "did you mean verlet", dict(compose={"verlat": [1]})),
             (TypeError, "step is a function", dict(step=5)),
             (nevh.Refused, "nan", dict(kick=[float("nan")], drift=[1])),

@@ -30,7 +30,7 @@ numbers = ["x", [], {}, thing, nan, inf, -inf, huge, 1j, b"1", -1, 0, [1, 2], np
            np.array([[1.]]), np.float32(nan), np.datetime64("2020"), raises]
 of_solve = {
     "dt": numbers,
-    "max_step": numbers[:6] + numbers[7:],
+    "max_step": numbers[:5] + numbers[6:],
     "t_span": [nan, "x", (1,), (1, 2, 3), (0, 0), (nan, 1), (0, inf), ("a", "b"), 5,
                [None, 1], (0, huge), (0, 1j), thing],
     "y0": [5, "ab", [1], [1, 2, 3], [], [nan, 0], [inf, 0], [None, 0], ["1", "x"],
