@@ -95,7 +95,7 @@ says 'with --impact --plot'
 exits 0 effects pendulum --impact --t-end 10
 has '^Without kinetic no coordinate moves'
 has '^ kinetic +on +verlet +[0-9.]+ +[0-9.]+ +0$'
-has '^Without gravity all stays where it starts'
+has '^Without gravity nothing moves'
 has '^ gravity +on +verlet +[0-9.]+e'
 has '^difference: of the states'
 lacks 'is chaotic'

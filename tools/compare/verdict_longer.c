@@ -45,8 +45,8 @@ static void open_run_words(const plan *p, const row *r, const char *subject,
     if (r->followed > 0 && r->longer.max > 2 * r->energy.max)
         list_print(words,
                    "%s: the energy error is at most %.1e in the run and %.1e "
-                   "when it is continued until t = %s; whether it goes on "
-                   "growing, a run until t = %g%s may decide.",
+                   "when it is continued until t = %s; a run until t = %g%s "
+                   "may show whether it keeps growing.",
                    subject, r->energy.max, r->longer.max, until, decides, unit);
     else
         list_print(
@@ -80,7 +80,7 @@ void verdict_open_words(const plan *p, const row rows[], size_t count,
     if (nevh_energy_passes_over(e))
         list_print(words,
                    "%s: H changes within a step, and the energy error, up to "
-                   "%.1e, is that of steps which pass over it: it says nothing "
+                   "%.1e, is that of steps which pass over the change, not "
                    "of the scheme; take a shorter step.",
                    subject, r->energy.max);
     else if (is_carried(r, e))

@@ -119,7 +119,7 @@ static int check_times(const plan *p, const options *o) {
         return tool_refuse("%s: no end: give t_end in [run], or --t-end",
                            p->name);
     if (p->t_end == p->run->t_start)
-        return tool_refuse("%s: the run ends where it begins, at t = %g; give "
+        return tool_refuse("%s: the run ends at its start, t = %g; give "
                            "t_end in [run], or --t-end",
                            p->name, p->t_end);
     if (p->t_end < p->run->t_start)
@@ -384,8 +384,8 @@ void plan_note_first(const plan *p, const char *integrator, list *notes) {
     if (nevh_integrator_adaptive(plan_scheme(p, integrator, &transformed)) &&
         p->tolerances)
         list_print(notes,
-                   "tolerance: %.9g%s; steps are no longer than dt, at whose "
-                   "multiples they end",
+                   "tolerance: %.9g%s; steps are at most dt long and end at "
+                   "its multiples",
                    p->tolerance[0],
                    p->tolerances > 1 ? ", the first of the list" : "");
     list_print(notes, "gradient: %s%s", p->gradients.item[0],

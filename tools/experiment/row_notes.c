@@ -118,7 +118,8 @@ static void note_rows(const plan *p, const row rows[], size_t count,
             }
     if (p->match_work)
         list_add(notes, "match = work: rows of one dt cost as many gradients "
-                        "as verlet with that dt; dt is what they take");
+                        "as verlet with that dt; the column dt has their "
+                        "steps");
 }
 
 /* Which integrators ran compiled steps, in all of their rows that were timed or in

@@ -38,7 +38,7 @@ static char *jump(const plan *p, const nevh_energy *energy, double before,
     if (p->time || p->friction || !(fabs(now - before) > sudden * met))
         return NULL;
     return text_print("H jumps on the orbit before t = %.6g, by %.2g of its "
-                      "scale, which no derivative tells of",
+                      "scale, which no derivative shows",
                       t, now - before);
 }
 

@@ -142,7 +142,7 @@ char *ends_text(const plan *p, double t) {
     if (!isfinite(t))
         return NULL;
     return text_print("the solution itself ends at t = %.6g%s%s, where it "
-                      "changes without bound: no scheme goes on from there",
+                      "changes without bound: no scheme can continue",
                       t, *unit ? " " : "", unit);
 }
 

@@ -324,8 +324,8 @@ static void outlook_notes(const plan *p, const trial_run *f, list *notes) {
         list_print(
             notes,
             "Unstable, not chaotic: Lyapunov exponent about %.2g%s%s over "
-            "%.3g%s%s; neighbours part as they do from an unstable equilibrium "
-            "or periodic orbit, or on an escape.",
+            "%.3g%s%s; nearby orbits separate as near an unstable "
+            "equilibrium or periodic orbit, or in an escape.",
             f->chaos.exponent, per, unit, time, space, unit);
         break;
     case NEVH_REGULAR:
@@ -343,8 +343,8 @@ static void outlook_notes(const plan *p, const trial_run *f, list *notes) {
                        f->length, space, unit);
         else
             list_print(notes,
-                       "Chaotic or regular: nothing is known, for the run ends "
-                       "where it starts%s%s.",
+                       "Chaotic or regular: unknown, since the run ends at "
+                       "its start%s%s.",
                        f->failure ? ": " : "", f->failure ? f->failure : "");
     }
 }

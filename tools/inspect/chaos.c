@@ -248,9 +248,9 @@ static void note_energy(chaos_job *j, const row *r) {
         j->options->format == FORMAT_CSV ? &j->result.before : &j->result.after;
     if (error > lost)
         list_print(notes,
-                   "%s at dt = %g does not keep the energy (error %.2g of its "
-                   "scale): what is found is of these steps, not of H; take a "
-                   "smaller dt.",
+                   "%s at dt = %g does not keep the energy (error %.2g of "
+                   "its scale): the result holds for these steps, not for H; "
+                   "take a smaller dt.",
                    r->integrator, r->dt, error);
     free(q);
     nevh_energy_free(energy);

@@ -202,7 +202,7 @@ static void effect_words(const char *effect, const both *b, const char *names,
                    "compare with.",
                    effect);
     else if (b->ran && rests(&b->trace[0]) && !rests(&b->trace[1]))
-        list_print(words, "Without %s all stays where it starts.", effect);
+        list_print(words, "Without %s nothing moves.", effect);
 }
 
 /* All digits, but for what is to be read. */

@@ -279,10 +279,12 @@ static void note(const flow_job *j, const options *o, list *notes) {
 static void change_words(const flow_row *r, double ratio, double t, list *to) {
     const char *way = ratio > 1 ? "grows" : "shrinks";
     if (fabs(ratio - 1) < 0.1)
-        list_print(to, "%s, dt = %g: the area %s by %.1e of it by t = %.6g.",
-                   r->integrator, r->dt, way, fabs(ratio - 1), t);
+        list_print(to, "%s, dt = %g: the area %s by %.2g %% until t = %.6g.",
+                   r->integrator, r->dt, way, 100 * fabs(ratio - 1), t);
     else
-        list_print(to, "%s, dt = %g: the area %s to %.3g of it by t = %.6g.",
+        list_print(to,
+                   "%s, dt = %g: the area %s to %.3g times its size "
+                   "until t = %.6g.",
                    r->integrator, r->dt, way, ratio, t);
 }
 

@@ -404,8 +404,8 @@ static int choose(shape *c) {
     if (status)
         return status;
     if (k == p->n)
-        return tool_refuse("%s: %s: say which shape, as --shape "
-                           "'disc(%s = 0, p_%s = 0, 0.1)'",
+        return tool_refuse("%s: %s: name a shape, as --shape 'disc(%s = 0, "
+                           "p_%s = 0, 0.1)'",
                            p->name,
                            moved ? "along the orbit no coordinate changes "
                                    "together with its momentum"

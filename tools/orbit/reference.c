@@ -159,9 +159,9 @@ static void put_notes(const reference_job *j, page *result) {
     if (j->fewest == j->digits)
         return;
     list_print(&result->after,
-               "From t = %.9g on not all digits asked for are certain, but "
-               "%zu or more: the orbit makes differences in the last digits "
-               "grow.",
+               "From t = %.9g on at least %zu digits are certain, not all "
+               "that were asked for: the orbit amplifies differences in the "
+               "last digits.",
                j->lost, j->fewest);
     if (!j->left)
         list_print(&result->after,

@@ -11,7 +11,7 @@ void cost_notes(const costs *c, list *notes) {
     if (c->whole > p->t_end)
         list_print(notes,
                    "shortened, so that all schemes can be tried; --t-end %g "
-                   "takes the whole",
+                   "runs all of it",
                    c->whole);
     list_print(notes,
                "cost: steps that keep the largest %s error of the run below "
@@ -257,8 +257,8 @@ static void hidden_words(const costs *c, list *words) {
                    dear);
     if (untried)
         list_print(words,
-                   "%zu were not tried, for lack of time: --t-end shortens the "
-                   "run, --integrators names those that matter.",
+                   "%zu were not tried, for lack of time: --t-end shortens "
+                   "the run, --integrators selects schemes.",
                    untried);
 }
 
@@ -315,8 +315,8 @@ static void empty_words(const costs *c, list *words) {
         return;
     if (cost_is_beyond(c, k))
         list_print(words,
-                   "%.0f digits and more cannot be told: the reference's own "
-                   "error is larger.",
+                   "%.0f digits and more are not resolved: the error of the "
+                   "reference is larger.",
                    -log10(cost_target[k]));
     else
         list_print(words, "No step reaches %.0f digits.",
@@ -336,8 +336,8 @@ static void legend_words(const costs *c, list *words) {
             "are much cheaper.",
             longest);
     if (any_word(c, "floor"))
-        list_add(words, "floor: shorter steps do not lessen the error, for "
-                        "rounding or what the gradient lacks.");
+        list_add(words, "floor: shorter steps do not reduce the error: "
+                        "rounding, or the error of the gradient, limits it.");
     double spread = 100 * typical_spread(c);
     char *share =
         text_print(", half of which lie within %.1g %% of them", spread);
@@ -362,8 +362,8 @@ void cost_words(costs *c, list *words) {
         drifts_here);
     name_words(
         c, words,
-        "the energy is conserved exactly at any step, so that this table "
-        "ranks nothing; use --by state.",
+        "the energy is conserved exactly at any step, so that this table has "
+        "no ranking; use --by state.",
         conserves_energy);
     if (c->search.plan.friction && !c->search.by_state)
         list_add(words, "Friction around a step is exact in the balance, "

@@ -258,8 +258,8 @@ static int check_observable(plan *p, const options *o) {
         status = plan_observe(p, o->observable);
     if (status || o->search.error >= surely * p->observable_error)
         return status;
-    tool_refuse("%s: an error of %g of %s cannot be told: the reference's own "
-                "is %.1e (%s)",
+    tool_refuse("%s: an error of %g of %s is not resolved: that of the "
+                "reference is %.1e (%s)",
                 p->name, o->search.error, o->observable, p->observable_error,
                 nevh_reference_text(p->reference));
     return TOOL_FAILED;
@@ -269,8 +269,8 @@ static int check_reference(plan *p, double target) {
     int status = plan_require_reference(p);
     if (status || target >= surely * nevh_reference_error(p->reference))
         return status;
-    tool_refuse("%s: a state error of %g cannot be told: that of the reference "
-                "is %.1e (%s)",
+    tool_refuse("%s: a state error of %g is not resolved: that of the "
+                "reference is %.1e (%s)",
                 p->name, target, nevh_reference_error(p->reference),
                 nevh_reference_text(p->reference));
     return TOOL_FAILED;

@@ -208,8 +208,8 @@ static void drift_words(const row *r, list *words) {
             r->followed);
     if (r->energy.verdict == NEVH_UNDECIDED)
         list_print(words,
-                   "Whether its energy drifts cannot be told yet: nevh compare "
-                   "follows it further, as may a longer --t-end.");
+                   "The run is too short to show whether its energy drifts: "
+                   "nevh compare, or a longer --t-end, follows it further.");
 }
 
 static void answer_words(const recommendation *a, const options *o,
@@ -336,11 +336,12 @@ static void print_reason(const recommendation *a) {
                 failed = &l->level[k];
     }
     if (keeps)
-        tool_refuse("%s: what runs keeps the energy at any step, so that its "
-                    "error chooses none; ask for --state-error",
+        tool_refuse("%s: the integrators that run keep the energy at any "
+                    "step, so that its error selects no step; use "
+                    "--state-error",
                     name);
     else if (failed)
-        tool_refuse("%s: no integrator comes to the end: %s with the %s "
+        tool_refuse("%s: no integrator reaches the end: %s with the %s "
                     "gradient at dt = %g %s",
                     name, failed->integrator, failed->gradient, failed->dt,
                     failed->status);
