@@ -83,9 +83,7 @@ if test -s $work/terms; then
 fi
 
 # Comments that begin with another word, in the folders that have none.
-plain='include integrators lib models tools/compare tools/experiment tools/hard
-    tools/inspect tools/orbit tools/plot tools/report tools/search
-    tools/commands.c tools/help.c tools/nevh.c'
+plain='include integrators lib models tools'
 inverted() {
     awk -v words='(Of|What|Whether|Where|Those|That|How|By|Who|Whose|Whoever)' \
         '{ gsub(/"[^"]*"/, "") }

@@ -56,7 +56,8 @@ static void remove_and_end(int number) {
     signal_end(number);
 }
 
-/* What the first signal of these calls; NULL: it ends the program, as others do. */
+/* The function to call at the first signal; NULL: it ends the program, as others
+   do. */
 static void (*volatile to_note)(int);
 static const char *volatile if_late;
 static volatile sig_atomic_t noted;
@@ -97,12 +98,12 @@ void signals_catch(void (*note)(int), const char *late) {
         signal_catch(of_note[i], note_or_end);
 }
 
-/* Where memory is out the program ends from anywhere. */
+/* For exits from anywhere, as when memory is exhausted. */
 static void remove_at_exit(void) {
     remove_all(0);
 }
 
-/* What ends a program that has no handler. */
+/* Catches a signal that would end the program, unless it has a handler. */
 static void catch_where_none_is(int number) {
     struct sigaction found;
     if (sigaction(number, NULL, &found) == 0 && found.sa_handler == SIG_DFL)

@@ -13,7 +13,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-/* What a signal stops, and which one came; members under way are left. */
+/* The sweep that a signal stops, and the signal; members under way are left. */
 static nevh_sweep *volatile under_way;
 static volatile sig_atomic_t interrupted;
 
@@ -89,7 +89,7 @@ static int keep(void *data, const nevh_sweep_result *r) {
     return 0;
 }
 
-/* What the file has, of all times that it was gone on with. */
+/* Reports the counts of the file, those of earlier runs included. */
 static int tell_array(sweep_job *j) {
     uint64_t have[4] = {0};
     store *s = &j->store;

@@ -53,7 +53,7 @@ static double sum_at(fitting *f, const double x[], double residual[]) {
     return sum;
 }
 
-/* Whether sums at the ends that errors make are those of a paraboloid. */
+/* True if sums at the ends of the intervals by errors are those of a paraboloid. */
 static bool is_quadratic(const profile *p) {
     static const double part = 0.1;
     fitting *f = p->fit;

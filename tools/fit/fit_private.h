@@ -18,13 +18,13 @@ typedef struct {
 
 #define FIT_ROUNDING 1e-9 /* of the spread of the data */
 
-/* How orbits are computed. */
+/* The scheme of the orbits. */
 typedef struct {
     const char *integrator;
     double dt, tolerance;
 } fit_scheme;
 
-/* What the error of the scheme is, beside those of the numbers. */
+/* The effect of the scheme's error, beside the errors of the numbers. */
 typedef enum {
     FIT_UNCHECKED, /* no finer orbit; `unchecked` says why */
     FIT_SMALL,
@@ -66,7 +66,7 @@ typedef struct {
 } fitting;
 
 /* fit_orbit.c */
-/* What is varied, and its values in the scene.
+/* Finds the numbers that are varied, and their values in the scene.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int fit_begin(fitting *, const options *);
 /* The residuals, of `used` points in units of their deviations, of the orbit with
@@ -85,14 +85,14 @@ bool fit_scheme_finer(const fitting *, size_t level, bool stepwise,
 double fit_rounding(const fitting *);
 double fit_own_rounding(const fitting *); /* the part that orbits have */
 bool fit_is_rounding(const fitting *, double chi_square);
-/* What rounding changes of the orbit of these numbers: their last digits, and the
-   gradients that were asked for in place of exact ones. */
+/* Finds the change of the orbit by rounding: the last digits of the numbers, and
+   the gradients that were asked for in place of exact ones. */
 void fit_find_rounding(fitting *, const double x[]);
-/* Whether that is so much that the orbit tells nothing of the numbers. */
+/* True if that is so much that the orbit does not determine the numbers. */
 bool fit_is_chaotic(const fitting *);
 bool fit_is_given(const fitting *); /* whether the scheme is */
 void fit_scheme_words(const fitting *, list *words);
-/* Whether neighbouring residuals of a column are alike, which noise is not. */
+/* Warns if neighbouring residuals of a column are alike, which noise is not. */
 void fit_residual_words(const fitting *, const double residual[], list *words);
 
 /* fit_minimise.c */

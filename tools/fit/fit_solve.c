@@ -43,8 +43,7 @@ static void tell_direction(fitting *f, const gsl_vector *along) {
         *f->direction = '\0';
 }
 
-/* Whether all columns of the matrix, made as long as each other, are
-   independent. */
+/* True if all columns of the matrix, scaled to equal length, are independent. */
 static bool determined(fitting *f, const gsl_matrix *jacobian) {
     size_t p = f->count;
     gsl_matrix *a = fit_matrix(f->residuals, p), *v = fit_matrix(p, p);
@@ -93,7 +92,7 @@ static void start_values(const fitting *f, gsl_vector *x) {
         gsl_vector_set(x, k, f->item[k].first / f->item[k].scale);
 }
 
-/* By and by; parts that fail leave the values as they are. */
+/* Fits growing parts of the data; parts that fail leave the values as they are. */
 static void approach(fitting *f, gsl_vector *x) {
     gsl_vector *before = fit_vector(f->count);
     start_values(f, x);
@@ -114,7 +113,7 @@ static void approach(fitting *f, gsl_vector *x) {
     gsl_vector_free(before);
 }
 
-/* Of each column, in its own unit. */
+/* Finds the root mean square of each column, in its own unit. */
 static void take_rms(fitting *f, const gsl_vector *residual) {
     const measured *m = f->data;
     f->rms = tool_allocate(m->columns, sizeof *f->rms);
@@ -172,7 +171,7 @@ static attempt attempt_all(fitting *f) {
     return better(f, a, attempt_from(f, x[1]));
 }
 
-/* What orbits of another scheme change. */
+/* The change by orbits of another scheme. */
 typedef struct {
     bool orbit; /* there is one; else f->why */
     bool small; /* in numbers, and in residuals that numbers do not explain */
@@ -290,7 +289,7 @@ static void take_values(fitting *f, const attempt *a) {
         f->item[k].value = gsl_vector_get(a->x, k) * f->item[k].scale;
 }
 
-/* Whether it is so near that it is no other minimum. */
+/* True if it is so near that it is the same minimum. */
 static bool is_same(const fitting *f, const attempt *a) {
     static const double near = 2; /* errors */
     bool same = !a->status;
