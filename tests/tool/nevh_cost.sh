@@ -222,4 +222,21 @@ has 'itself makes an energy error'
 exits 0 gradients kepler --gradient central8
 has '^central8, half-spread 0.1: a difference by x'
 
+
+# Near the edge of the domain of H stages have no solution: a scheme that fails with
+# all steps ends the command with 1 beside others that run.
+cat >$work/edge.nevh <<'END'
+[coordinates]
+x = 1
+[effects]
+T = p_x^2/2
+V = 4*sqrt(x - 1 + 1e-12) + 1e-9/(x - 1 + 1e-9)
+[run]
+t_end = 1
+dt = 0.1
+integrators = verlet
+END
+exits 0 cost $work/edge.nevh --integrators verlet,euler
+exits 1 cost $work/edge.nevh --integrators verlet,gauss4
+says 'gauss4 .* failed: '
 exit $status

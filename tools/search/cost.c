@@ -236,25 +236,27 @@ static page make_page(const options *o, costs *c) {
     return result;
 }
 
-static int status_of(const costs *c) {
-    bool ran = false, failed = false;
-    for (size_t i = 0; i < c->count; i++)
-        for (size_t k = 0; k < c->study[i].count; k++) {
-            ran |= c->study[i].level[k].ran;
-            failed |= c->study[i].level[k].failed;
+/* The first run that failed with a step that was asked for, or of a scheme that ran
+   with none; other steps are a search. */
+static const row *first_failure(const costs *c) {
+    for (size_t i = 0; i < c->count; i++) {
+        const row *failed = NULL;
+        bool ran = false;
+        for (size_t k = c->study[i].count; k-- > 0;) {
+            const row *level = &c->study[i].level[k];
+            ran |= level->ran;
+            failed = level->failed ? level : failed;
         }
-    return failed && (!ran || c->search.dt) ? TOOL_FAILED : TOOL_OK;
+        if (failed && (!ran || c->search.dt))
+            return failed;
+    }
+    return NULL;
 }
 
 /* On stderr, too, where the exit status says that rows failed. */
 static int report_failures(const costs *c) {
-    int status = status_of(c);
-    const row *failed = NULL;
-    for (size_t i = 0; i < c->count && !failed; i++)
-        for (size_t k = 0; k < c->study[i].count && !failed; k++)
-            if (c->study[i].level[k].failed)
-                failed = &c->study[i].level[k];
-    return status && failed ? row_fails(&c->search.plan, failed) : status;
+    const row *failed = first_failure(c);
+    return failed ? row_fails(&c->search.plan, failed) : TOOL_OK;
 }
 
 static int draw_costs(const options *o, const costs *c) {
