@@ -207,9 +207,38 @@ static void limit_by_convergence(orbit *o) {
     o->stops = false;
 }
 
-static int begin(orbit *o, real t, const real state[], nevh__report *report) {
+static void note_state(orbit *o, const real state[]) {
     for (size_t i = 0; i < 2 * o->n; i++)
         o->most[i] = fmax(o->most[i], fabs((double)state[i]));
+}
+
+/* The shortest time in which a coefficient says that a variable changes by its size,
+   of those whose size is known; 0 where nothing changes. */
+static double time_of_change(const orbit *o) {
+    double most = 0;
+    for (size_t k = 1; k <= o->order; k++)
+        for (size_t i = 0; i < 2 * o->n; i++) {
+            double x = fabs(shorten(o->rows[k * 2 * o->n + i]));
+            if (o->most[i] > 0)
+                most = fmax(most, pow(x / o->most[i], 1 / (double)k));
+        }
+    return most > 0 ? o->unit / most : 0;
+}
+
+/* Finds a unit of time in which no coefficient at the start is beyond all numbers. */
+static void find_unit(orbit *o, real t, const real state[]) {
+    static const double near = 0x1p10;
+    enum { TRIES = 8 };
+    for (int i = 0; i < TRIES && expand(o, t, state); i++) {
+        double unit = time_of_change(o), ratio = unit / o->unit;
+        if (!(unit > 0) || (ratio < near && ratio > 1 / near))
+            break;
+        take_unit(o, unit);
+    }
+}
+
+static int begin(orbit *o, real t, const real state[], nevh__report *report) {
+    note_state(o, state);
     for (size_t i = 0; i < 2 * o->n; i++)
         o->seen[i] = fmax(o->seen[i], o->most[i]);
     memcpy(o->start, state, 2 * o->n * sizeof *state);
@@ -237,7 +266,9 @@ static int begin(orbit *o, real t, const real state[], nevh__report *report) {
 int NAMED(nevh__series_orbit_start)(orbit *o, real t, const real state[],
                                     nevh__report *report) {
     memcpy(o->state, state, 2 * o->n * sizeof *state);
+    note_state(o, state);
     take_unit(o, o->longest);
+    find_unit(o, t, state);
     o->reach = o->unit;
     return begin(o, t, state, report);
 }

@@ -4,16 +4,22 @@
 
 . "${srcdir:-.}/tests/support/nevh_support.sh"
 
-# scene L E T COORDINATES H: with m, k, f and w in units of powers of two.
+# rescale L E T SCENE [AWK-OPTION...]: the scene in units of powers of two.
+rescale() {
+    powers="$1 $2 $3"
+    plain=$4
+    shift 4
+    awk "$@" $(echo $powers | awk '{
+        printf "-v L=%.17g -v E=%.17g -v T=%.17g", 2^$1, 2^$2, 2^$3 }') \
+        -f "$srcdir/tests/support/rescale.awk" "$plain" >$work/scene.nevh
+}
+# scene L E T COORDINATES H
 scene() {
-    awk -v l="$1" -v e="$2" -v t="$3" -v q="$4" -v h="$5" 'BEGIN {
-        L = 2^l; E = 2^e; T = 2^t
-        printf "[parameters]\nl = %.17g\nm = %.17g\nk = %.17g\nf = %.17g\n", \
-            L, E*T*T/L/L, E/L/L, E/L
-        printf "w = %.17g\n[coordinates]\n%s\n[effects]\n%s\n", 1/T, q, h
-        printf "[run]\nt_end = %.17g\ndt = %.17g\n", 60*T, 0.1*T
-        print "integrators = verlet, euler, rk4" }' |
-        sed 's/;/\n/g' >$work/scene.nevh
+    { printf '[parameters]\nl = 1\nm = 1\nk = 1\nf = 1\nw = 1\n'
+      printf '[coordinates]\n%s\n[effects]\n%s\n' "$4" "$5" | sed 's/;/\n/g'
+      printf '[run]\nt_end = 60\ndt = 0.1\nintegrators = verlet, euler, rk4\n'
+    } >$work/plain.nevh
+    rescale $1 $2 $3 $work/plain.nevh -v few=
 }
 # told [DIGITS [OPTIONS]]: columns without a unit, numbers to DIGITS; but for those of
 # a row that explodes, in which rounding grows.
@@ -108,12 +114,9 @@ no|verlet|x = 1.3*l|H = p_x^2/(2*m) + k*x^2/2 - 0.1*f*x/(1 + (w*t - 3)^2)
 END
 # Scenes that ship, in other units: 20 steps of two schemes have the same status and
 # energy error.
-rows() { # rows SCENE L E T: powers of two
-    awk -v few=20 -v L="$(awk "BEGIN { printf \"%.17g\", 2^$2 }")" \
-        -v E="$(awk "BEGIN { printf \"%.17g\", 2^$3 }")" \
-        -v T="$(awk "BEGIN { printf \"%.17g\", 2^$4 }")" \
-        -f "$srcdir/tests/support/rescale.awk" "$1" >$work/scene.nevh
-    "$nevh" compare $work/scene.nevh --integrators rk4,gauss4 --native never \
+rows() { # rows SCENE L E T [INTEGRATORS]
+    rescale $2 $3 $4 "$1" -v few=20
+    "$nevh" compare $work/scene.nevh --integrators ${5:-rk4,gauss4} --native never \
         --format csv --quiet 2>&1 | awk -F, '
         NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
         { e = $at["max_energy_error"]
@@ -132,6 +135,23 @@ for file in "$srcdir"/scenes/*.nevh; do
         rows "$file" $(echo $unit | tr , ' ') >$work/other
         cmp -s $work/usual $work/other ||
             { fails "$file in 2^($unit)"; diff $work/usual $work/other; }
+    done
+done
+# A scene that gives steps of differences, and has a momentum that is 0.
+file=$srcdir/scenes/outer-solar-system.nevh
+for units in '0 0 0' '100 0 0' '0 -100 0' '0 0 -100'; do
+    rows "$file" $units dprkn12 >$work/other
+    grep -q '^dprkn12 ok' $work/other || { fails "dprkn12 in 2^($units)"; cat $work/other; }
+done
+# States have all digits that were asked for, and those of variables without a unit
+# are the same.
+for name in pendulum kepler henon-heiles figure-eight; do
+    for units in '0 0 0' '0 0 60' '0 0 100' '0 0 -100' '100 0 0' '0 -100 0'; do
+        rescale $units "$srcdir/scenes/$name.nevh" -v few=20
+        sed -i.old 's/^\[run\]/&\nintegrators = verlet/' $work/scene.nevh
+        "$nevh" reference $work/scene.nevh --format csv --quiet >$work/out 2>&1
+        awk -F, 'NR > 1 && $4 < 24 || NF < 5 { wrong = 1 } END { exit wrong || NR < 3 }' \
+            $work/out || { fails "$name in 2^($units)"; cat $work/out; }
     done
 done
 exit $status
