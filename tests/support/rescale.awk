@@ -104,13 +104,13 @@ function steps(value,    out, n, part, i, base, name) {
     return out
 }
 
+FNR == 1 { pass++ }
 {
     sub(/[ \t]*#.*/, "")
     if ($0 ~ /^[ \t]*$/)
         next
 }
 /^\[/ { section = $1 }
-FNR == 1 { pass++ }
 pass == 1 {
     if (section == "[coordinates]" && $0 !~ /^\[/) {
         name = $1
