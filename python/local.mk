@@ -17,6 +17,7 @@ python_package = \
 	python/nevh/_library.py \
 	python/nevh/_own.py \
 	python/nevh/_plot.py \
+	python/nevh/_run.py \
 	python/nevh/_scene.py \
 	python/nevh/_solve.py \
 	python/nevh/_sweep.py \

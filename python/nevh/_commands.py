@@ -8,7 +8,6 @@ from __future__ import annotations
 import functools
 import inspect
 import json
-import keyword
 import math
 import os
 import re
@@ -20,7 +19,7 @@ import warnings
 from typing import Any
 
 from ._library import _closest, Error, Failed, gradient_names, _lib, _name_list, Refused, _text, _trees
-from ._scene import _assign, _is_row, Scene, _scene, _starts, _value
+from ._scene import _assign, _is_row, _scene, _starts, _value
 from ._own import Integrator, rows_of_functions
 from ._table import Table, Text
 

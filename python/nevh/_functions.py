@@ -10,7 +10,7 @@ import numbers
 import os
 
 from ._library import _check, _lib, _Options, Refused, _Separability, _value_fn
-from ._arrays import np, _numbers
+from ._arrays import np, _numbers, _real
 from ._scene import Scene, _scene
 from ._symbol import Untraceable
 from . import _traced
@@ -166,3 +166,20 @@ class _Subject:
         _, at = y
         _lib.system_probe(self.system, t, at, at + 8 * self.n, None, c.byref(found))
         return found.separable
+
+
+def _set_gradient_steps(o, scene, given, n, what):
+    """The half-spreads of differences in options: those given, a number or one for
+    each of y; else the scene's.  Returns what must be kept while the options are used."""
+    if given is None and scene:
+        settings = scene._settings()
+        o.gradient_step = settings.gradient_step
+        o.gradient_steps = settings.gradient_steps
+        return None
+    if not hasattr(given, "__len__"):
+        o.gradient_step = 0 if given is None else _real(what, given)
+        return None
+    steps, o.gradient_steps = _numbers(given, what)
+    if len(steps) != 2 * n:
+        raise Refused("%s has %d numbers; it takes one, or %d" % (what, len(steps), 2 * n))
+    return steps

@@ -13,8 +13,7 @@ from typing import Any, Mapping, Sequence
 from ._library import _check, Failed, _gradient, _lib, _Options, Refused
 from ._arrays import np, _numbers, _table
 from ._scene import Scene
-from ._functions import _Subject
-from ._solve import _set_gradient_steps
+from ._functions import _set_gradient_steps, _Subject
 
 
 def _hgrad(H, ds, named):

@@ -12,6 +12,7 @@ from typing import Any, Callable, Sequence
 
 from ._library import _lib, _Options, Refused, _text, verdicts
 from ._arrays import np, _numbers, Result
+from ._functions import _set_gradient_steps
 from ._scene import Scene, _value
 
 
@@ -145,11 +146,13 @@ def _line(name, values):
 class _Field:
     """Values and gradients of H at states of Python."""
 
-    def __init__(self, subject, gradient, t0, y):
+    def __init__(self, subject, gradient, t0, y, gradient_step=None):
         self.n = subject.n
         self._state, self._at = _numbers(y)
         o = _Options(gradient=_lib.gradient_named(gradient.encode()), t=t0, q=self._at,
                      p=self._at + 8 * self.n)
+        self._steps = _set_gradient_steps(o, subject.scene, gradient_step, self.n,
+                                          "gradient_step")
         self._field = _lib.field_new(subject.system, c.byref(o))
         self._out, self._out_at = _numbers([0.0] * (2 * self.n))
         self.evaluations = 0
@@ -216,10 +219,10 @@ def _rows(values):
     return np.array(values, dtype=float).reshape(-1)
 
 
-def run_steps(mine, subject, gradient, y, t0, h, times):
+def run_steps(mine, subject, gradient, gradient_step, y, t0, h, times):
     """The orbit by a function, as a Result; `times` are those of its steps."""
     n, started = subject.n, time.process_time()
-    field = _Field(subject, gradient, t0, y[0])
+    field = _Field(subject, gradient, t0, y[0], gradient_step)
     state, at = _numbers(y[0])
     o = _Options(gradient=_lib.gradient_named(gradient.encode()), t=t0, q=at,
                  p=at + 8 * n)
@@ -307,7 +310,8 @@ def rows_of_functions(functions, table, given):
     for dt in dict.fromkeys(row["dt"] for row in table if row.get("dt")):
         for mine in functions:
             run = solve(scene, span, given.get("y0"), mine, dt=dt, check=False,
-                        gradient=gradient if isinstance(gradient, str) else gradient[0])
+                        gradient=gradient if isinstance(gradient, str) else gradient[0],
+                        gradient_step=given.get("gradient_step"))
             row = dict.fromkeys(table.columns)
             row.update(scene=scene.name, integrator=mine.name, order=mine.order,
                        symplectic="yes" if mine.symplectic else "no",

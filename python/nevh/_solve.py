@@ -5,259 +5,19 @@ SPDX-License-Identifier: GPL-3.0-or-later
 
 from __future__ import annotations
 
-import ctypes as c
 import math
 import os
-import signal
-import threading
-import warnings
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Callable, Mapping, Sequence
 
-from ._library import (_check, Failed, _gradient, _integrator, _JudgedRun, _lib,
-                       _observe_fn, _Observer, _Options, Refused, _STOPPED, _text, verdicts)
-from ._arrays import _cut, np, _numbers, _positive, _real, Result, _table, _whole_from_one
+from ._library import (_check, Failed, _gradient, _integrator, _lib, Refused, _STOPPED,
+                       _text)
+from ._arrays import np, _numbers, _positive, _real, Result, _whole_from_one
 from ._scene import Scene
 from ._functions import _Subject
 from ._events import DenseOutput, Events
 from ._own import Integrator, run_steps
-
-
-def _set_gradient_steps(o, scene, given, n, what):
-    """The half-spreads of differences in options: those given, a number or one for
-    each of y; else the scene's.  Returns what must be kept while the options are used."""
-    if given is None and scene:
-        settings = scene._settings()
-        o.gradient_step = settings.gradient_step
-        o.gradient_steps = settings.gradient_steps
-        return None
-    if not hasattr(given, "__len__"):
-        o.gradient_step = 0 if given is None else _real(what, given)
-        return None
-    steps, o.gradient_steps = _numbers(given, what)
-    if len(steps) != 2 * n:
-        raise Refused("%s has %d numbers; it takes one, or %d" % (what, len(steps), 2 * n))
-    return steps
-
-
-class _Plan:
-    """A stepper and what watches it."""
-
-    def __init__(self, subject, name, gradient, y, t0, tolerance, gradient_step):
-        self.subject = subject
-        integrator, transformed = _integrator(name)
-        o = self.options = _Options(t=t0, q=y[1], p=y[1] + 8 * subject.n,
-                                    tolerance=tolerance)
-        if gradient is None:  # none is taken: nothing is to be planned
-            o.gradient, gradient_step = _gradient("central2"), 1
-        else:
-            o.gradient = _gradient(gradient)
-        if transformed:
-            o.transform = subject.scene and _lib.scene_transform(subject.scene._made)
-            if not o.transform:
-                raise Refused("%s: there is no scene with a transform" % name)
-        self.steps = _set_gradient_steps(o, subject.scene, gradient_step, subject.n,
-                                         "gradient_step")
-        o.balance = subject.reads_time(t0, y) or subject.friction() is not None
-        self.integrator = integrator
-        self.stepper = _lib.stepper_new(subject.system, integrator, c.byref(o))
-        status = _lib.stepper_status(self.stepper)
-        subject.trap.planned(status)
-        self.check(status)
-        self.observe_energy()
-
-    def observe_energy(self):
-        """An observer of the energy that has seen nothing yet."""
-        _lib.energy_free(getattr(self, "energy", None))
-        self.energy = _lib.energy_new(self.subject.system, c.byref(self.options))
-        if self.options.balance:
-            _lib.energy_follow(self.energy, self.stepper)
-        _lib.energy_expect(self.energy, self.stepper)
-        scene = self.subject.scene
-        if scene and scene._settings().energy_scale > 0:
-            _lib.energy_set_scale(self.energy, scene._settings().energy_scale)
-
-    def __del__(self):
-        _lib.energy_free(getattr(self, "energy", None))
-        if hasattr(self, "stepper"):
-            _lib.stepper_free(self.stepper)
-
-    def check(self, status):
-        _check(status, _lib.stepper_message(self.stepper))
-
-
-class _Interrupt:
-    """While the library runs, the interrupt key is noted, to be raised after."""
-
-    def __init__(self):
-        self.pressed = False
-        self.before = None
-
-    def __enter__(self):
-        main = threading.current_thread() is threading.main_thread()
-        if main and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-            self.before = signal.signal(signal.SIGINT, self.note)
-        return self
-
-    def note(self, *_):
-        self.pressed = True
-
-    def __exit__(self, *_):
-        if self.before is not None:
-            signal.signal(signal.SIGINT, self.before)
-
-
-def _watcher(observe, n, trap, interrupt):
-    """An observer that calls `observe`, and looks for the interrupt key."""
-    view = c.c_double * n
-
-    def watch(_, step, t, q, p):
-        try:
-            if interrupt.pressed:
-                raise KeyboardInterrupt
-            if observe is None:
-                return 0
-            y = list(view.from_address(q)) + list(view.from_address(p))
-            return bool(observe(t, np.array(y) if np is not None else y))
-        except BaseException as error:
-            trap.error = error
-            return 1
-    return _observe_fn(watch)
-
-
-def _times_of_steps(t0, t_end, h):
-    count = round((t_end - t0) / h)
-    if count > 0 and abs((t_end - t0) / h - count) <= 1e-9 * count:
-        h = (t_end - t0) / count
-        count -= 1
-    else:
-        count = int((t_end - t0) / h)
-    if np is not None:
-        times = np.empty(count + 2)
-        np.multiply(np.arange(count + 1), h, out=times[:-1])
-        times[:-1] += t0
-        times[-1] = t_end
-        return times
-    return [t0 + i * h for i in range(count + 1)] + [t_end]
-
-
-def _steps(method, dt, rtol, atol, span, y0):
-    """The step and the tolerance of a method."""
-    integrator, _ = _integrator(method)
-    if not _lib.integrator_adaptive(integrator):
-        if rtol is not None or atol is not None:
-            raise Refused("%s takes steps of dt and no tolerance: leave out rtol and "
-                          "atol" % method)
-        if dt is None:
-            raise Refused("%s takes steps of dt: give it" % method)
-        return dt, 0.0
-    rtol = 1e-9 if rtol is None else _positive("rtol", rtol)
-    if atol is not None:
-        least = min(_numbers(atol, "atol")[0])
-        if least > 0:
-            rtol = min(rtol, least / max(1.0, max(map(abs, y0))))
-        elif not least == 0:
-            raise Refused("atol = %g: it takes 0 or a number above it" % least)
-    return abs(span) / 256 if dt is None else dt, rtol
-
-
-def _choose(subject, dt, t0, y):
-    """Methods, of which the first that is not refused is taken."""
-    if dt is None:
-        return ["dop853"] if subject.own else ["taylor", "dop853"]
-    return ["verlet" if subject.separable(t0, y) else "gauss4"]
-
-
-def _takes_none(method):
-    """Whether a method takes no gradient."""
-    return _lib.integrator_needs_formulas(_integrator(method)[0])
-
-
-def _stops(scene):
-    """The observers, none or one, that stop a run where the scene says."""
-    if scene and _lib.scene_stops(scene._made):
-        return [(_lib.address("scene_stop_observe"), scene._made, 1)]
-    return []
-
-
-def _settler(plan, t0, h, t_end, start, report):
-    """A function that gives the verdict on a run to the end, of a longer one."""
-    counts = _lib.stepper_counts(plan.stepper)
-    seconds = _lib.counts_seconds(c.byref(counts), plan.subject.n, plan.integrator,
-                                  _lib.stepper_order(plan.stepper),
-                                  _lib.stepper_taken(plan.stepper))
-
-    def settle():
-        subject = plan.subject
-        y, at = _numbers(start)
-        plan.observe_energy()
-        with _Interrupt() as interrupt:
-            watch = _watcher(None, subject.n, subject.trap, interrupt)
-            stops = _stops(subject.scene) + [(c.cast(watch, c.c_void_p).value, None, 64)]
-            run = _JudgedRun(t0, h, t_end, at, at + 8 * subject.n,
-                             (_Observer * len(stops))(*stops), len(stops), seconds)
-            status = _lib.verdict_settle(plan.stepper, plan.energy, c.byref(run),
-                                         c.byref(report))
-        subject.trap.spring()
-        _check(status, b"")
-        return verdicts[report.verdict]
-    return settle
-
-
-def _run_plan(plan, t0, t_end, h, times, y, observe, every):
-    """The orbit as a Result, and the status of the library."""
-    subject, n = plan.subject, plan.subject.n
-    start = list(y[0])
-    times, times_at = _numbers(times)
-    states, states_at = _table(2 * n, len(times))
-    kept, trap = c.c_size_t(), subject.trap
-    watched = [(_lib.address("energy_observe"), plan.energy, 1)]
-    watched += _stops(subject.scene)
-    with _Interrupt() as interrupt:
-        watch = _watcher(observe, n, trap, interrupt)
-        watched.append((c.cast(watch, c.c_void_p).value, None, every))
-        observers = (_Observer * len(watched))(*watched)
-        status = _lib.run_at(plan.stepper, t0, h, t_end, times_at, len(times),
-                             states_at, c.byref(kept), y[1], y[1] + 8 * n, observers,
-                             len(watched))
-    report = _lib.energy_result(plan.energy, 0)
-    counts = _lib.stepper_counts(plan.stepper)
-    message = _lib.stepper_message(plan.stepper).decode()
-    if status == _STOPPED and _lib.energy_status(plan.energy):
-        status = _lib.energy_status(plan.energy)
-        message = _lib.energy_message(plan.energy).decode()
-    if status == _STOPPED and subject.scene and _lib.scene_stops(subject.scene._made):
-        message += ": " + _lib.scene_stop_text(subject.scene._made).decode()
-    reached = t_end if not status else (
-        _lib.stepper_time(plan.stepper) if _lib.stepper_taken(plan.stepper) else t0)
-    effect = c.c_char_p()
-    passed = _lib.energy_passed(plan.energy, c.byref(effect))
-    if not math.isnan(passed) and status in (0, _STOPPED):
-        status = -1
-        message = (f"A step before t = {passed:.6g} passes a pole of "
-                   f"{effect.value.decode()}: what follows is not the orbit of H.")
-    count = kept.value
-    result = Result(
-        t=times[:count] if count < len(times) else times,
-        y=_cut(states, 2 * n, len(times), count),
-        nfev=counts.gradients, hamiltonian_evals=counts.hamiltonians,
-        status=0 if not status else 1 if status == _STOPPED else -1,
-        message=message or "The end of t_span was reached.",
-        success=status in (0, _STOPPED), energy_error=report.max,
-        energy_drift=report.drift,
-        energy_scale=report.scale, t_reached=reached,
-        y_reached=y[0].copy() if np is not None else list(y[0]), sol=None)
-    verdict = verdicts[report.verdict]
-    if verdict == "unstable" and not status and report.max > 1:
-        warnings.warn(
-            f"The energy changes by up to {report.max:.2g} times its scale: these "
-            "steps are no measure of the orbit; take a smaller dt, or another "
-            "integrator.", RuntimeWarning, stacklevel=4)
-    if verdict == "undecided" and not status and not subject.calls_python:
-        result._settle = _settler(plan, t0, h, t_end, start, report)
-    else:
-        result["verdict"] = verdict
-    return status, result
+from ._run import _choose, _Plan, _run_plan, _steps, _takes_none, _times_of_steps
 
 
 def _span(scene, t_span):
@@ -288,6 +48,78 @@ def _times_to_keep(t_eval, t0, t_end):
                           "%g" % (k, t, before))
         before = t
     return times
+
+
+def _start_of_function(t_span, y0):
+    """The time and the state where a function starts."""
+    if y0 is None or t_span is None:
+        raise Refused("a function needs t_span and y0")
+    y0, _ = _numbers(y0, "y0")
+    if len(y0) < 2 or len(y0) % 2:
+        raise Refused("y0 takes as many momenta as coordinates, not %d in all" % len(y0))
+    return _span(None, t_span)[0], y0
+
+
+def _finite_start(scene, y0):
+    """The start as an array and its address; refused where a number is not finite."""
+    y = _numbers(scene.start(y0) if scene else y0)
+    for k, number in enumerate(y[0]):
+        if not math.isfinite(number):
+            raise Refused("y0[%d]%s is %g" % (
+                k, ", the start of %s," % scene.names[k] if scene else "", number))
+    return y
+
+
+def _of_scene(scene, method, dt, rtol, gradient):
+    """Method, dt, rtol and gradient, where not given those of the scene."""
+    if not scene:
+        return method, dt, rtol, gradient
+    settings = scene._settings()
+    if method is None and settings.integrators:
+        method = settings.integrator[0].decode()
+    adapts = method is not None and not getattr(method, "step", None) and \
+        _lib.integrator_adaptive(_integrator(method)[0])
+    if dt is None and settings.dts and not adapts:
+        dt = settings.dt[0]
+    if rtol is None and settings.tolerances and adapts and not scene.is_formula:
+        rtol = settings.tolerance[0]
+    return method, dt, rtol, gradient or settings.gradient[0].decode()
+
+
+def _at_most(dt, max_step, tolerance):
+    """The step, where the method adapts at most max_step."""
+    if max_step is None or _real("max_step", max_step) == math.inf or (
+            dt <= _positive("max_step", max_step)):
+        return dt
+    if not tolerance:
+        raise Refused("dt = %g is above max_step = %g" % (dt, max_step))
+    return float(max_step)
+
+
+def _first_plan(subject, methods, gradient, y, t0, tolerance, gradient_step):
+    """The plan of the first method that is not refused, its name and its gradient."""
+    for name in methods:
+        of = None if _takes_none(name) else gradient or "central4"
+        try:
+            return _Plan(subject, name, of, y, t0, tolerance, gradient_step), name, of
+        except Refused:
+            if name == methods[-1]:
+                raise
+
+
+def _solve_by_function(method, subject, y, span, dt, gradient, gradient_step, check):
+    """The orbit by an integrator that is a function."""
+    if dt is None:
+        raise Refused("%s takes steps of dt: give it" % method.name)
+    t0, t_end = span
+    h = math.copysign(_positive("dt", dt), t_end - t0)
+    result = run_steps(method, subject, gradient or "central4", gradient_step, y, t0, h,
+                       list(_times_of_steps(t0, t_end, h)))
+    if check and result.status:
+        error = Failed(result.message)
+        error.result = result
+        raise error
+    return result
 
 
 def _watch_both(events, observe, every):
@@ -432,97 +264,53 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
         return _solve_members(H, t_span, y0, given)
     if method is not None and not isinstance(method, (type, Integrator)):
         _text("method", method)
-    start, found = None, Events(events, args)
-    if hasattr(H, "_problem"):  # a HGrad
-        H, gradient, gradient_step, given = H._problem(gradient, gradient_step)
-        parameters, args, coordinates, with_effects, without_effects, params = given
-    if not isinstance(H, (Scene, str, os.PathLike)):
-        if y0 is None or t_span is None:
-            raise Refused("a function needs t_span and y0")
-        y0, _ = _numbers(y0, "y0")
-        if len(y0) < 2 or len(y0) % 2:
-            raise Refused("y0 takes as many momenta as coordinates, not %d in all"
-                          % len(y0))
-        start = _span(None, t_span)[0], y0
+    found = Events(events, args)
     if observe is not None and not callable(observe):
         raise TypeError("observe is a function, not %r" % type(observe).__name__)
     every = _whole_from_one("every", every)
-    subject = _Subject(H, start, parameters, args,
-                       coordinates, with_effects, without_effects, params)
+    if hasattr(H, "_problem"):  # a HGrad
+        H, gradient, gradient_step, given = H._problem(gradient, gradient_step)
+        parameters, args, coordinates, with_effects, without_effects, params = given
+    is_text = isinstance(H, (Scene, str, os.PathLike))
+    subject = _Subject(H, None if is_text else _start_of_function(t_span, y0), parameters,
+                       args, coordinates, with_effects, without_effects, params)
     scene = subject.scene
-    if args and not found and isinstance(H, (Scene, str, os.PathLike)):
+    if args and not found and is_text:
         raise Refused("args are those of a function: give parameters={name: value}")
     if scene and scene.is_formula and (y0 is None or t_span is None):
         raise Refused("a formula needs t_span and y0")
-    y = scene.start(y0) if scene else y0
+    y = _finite_start(scene, y0)
     t0, t_end = _span(scene, t_span)
-    y = _numbers(y)
-    if not all(map(math.isfinite, y[0])):
-        k = next(k for k, number in enumerate(y[0]) if not math.isfinite(number))
-        raise Refused("y0[%d]%s is %g" % (
-            k, ", the start of %s," % scene.names[k] if scene else "", y[0][k]))
     if not abs(t_end - t0) < math.inf or t_end == t0:
         raise Refused("t_span = %g, %g is no time to go" % (t0, t_end))
     if gradient:
         _gradient(gradient)
+    method, dt, rtol, gradient = _of_scene(scene, method, dt, rtol, gradient)
     if getattr(method, "step", None):
-        if found or dense_output or dt is None or any(one is not None for one in (
-                observe, t_eval, rtol, atol, gradient_step, max_step)):
+        if found or dense_output or any(one is not None for one in (
+                observe, t_eval, rtol, atol, max_step)):
             raise Refused("%s is a function: it takes dt, and neither t_eval, observe, "
-                          "events, dense_output, rtol, atol, gradient_step nor max_step"
-                          % method.name)
-        h = math.copysign(_positive("dt", dt), t_end - t0)
-        result = run_steps(method, subject, gradient or ("exact" if scene else "central4"),
-                           y, t0, h, list(_times_of_steps(t0, t_end, h)))
-        if check and result.status:
-            error = Failed(result.message)
-            error.result = result
-            raise error
-        return result
-    if scene:
-        settings = scene._settings()
-        if method is None and settings.integrators:
-            method = settings.integrator[0].decode()
-        adapts = method is not None and _lib.integrator_adaptive(_integrator(method)[0])
-        if dt is None and settings.dts and not adapts:
-            dt = settings.dt[0]
-        if (rtol is None and settings.tolerances and adapts and
-                not scene.is_formula):
-            rtol = settings.tolerance[0]
-        gradient = gradient or settings.gradient[0].decode()
+                          "events, dense_output, rtol, atol nor max_step" % method.name)
+        return _solve_by_function(method, subject, y, (t0, t_end), dt, gradient,
+                                  gradient_step, check)
     dt = None if dt is None else _positive("dt", dt)
     methods = [method] if method is not None else _choose(subject, dt, t0, y)
     dt, tolerance = _steps(methods[0], dt, rtol, atol, t_end - t0, y[0])
-    if max_step is not None and _real("max_step", max_step) != math.inf and (
-            dt > _positive("max_step", max_step)):
-        if not tolerance:
-            raise Refused("dt = %g is above max_step = %g" % (dt, max_step))
-        dt = float(max_step)
+    dt = _at_most(dt, max_step, tolerance)
     h = dt if t_end > t0 else -dt
-    for name in methods:
-        of = None if _takes_none(name) else gradient or "central4"
-        try:
-            plan = _Plan(subject, name, of, y, t0, tolerance, gradient_step)
-        except Refused:
-            if name == methods[-1]:
-                raise
-        else:
-            method, gradient = name, of
-            break
-    if t_eval is None:
-        t_eval = _times_of_steps(t0, t_end, h)
-    else:
-        t_eval = _times_to_keep(t_eval, t0, t_end)
+    plan, method, gradient = _first_plan(subject, methods, gradient, y, t0, tolerance,
+                                         gradient_step)
+    steps = _times_of_steps(t0, t_end, h)
+    t_eval = steps if t_eval is None else _times_to_keep(t_eval, t0, t_end)
     if found:
         observe, every = _watch_both(found, observe, every), 1
     elif observe is None:
         every = 16 if tolerance else 512
     keeps_steps = bool(found) or dense_output
-    kept = _with_steps(t_eval, _times_of_steps(t0, t_end, h)) if keeps_steps else t_eval
+    kept = _with_steps(t_eval, steps) if keeps_steps else t_eval
     status, result = _run_plan(plan, t0, t_end, h, kept, y, observe, every)
-    names = scene.names if scene else None
     result.update(method=getattr(method, "name", method), dt=dt, tolerance=tolerance,
-                  gradient=gradient, names=names)
+                  gradient=gradient, names=scene.names if scene else None)
     try:
         subject.trap.spring()
         if keeps_steps and len(result.t):

@@ -102,6 +102,13 @@ def test_functions():
     for own, name in ((one, "verlet"), (two, "heun"), (three, "midpoint")):
         a, b = (nevh.solve(FORMULA, (0, 10), [1, 0], method, dt=0.1) for method in (own, name))
         assert abs(a.y - b.y).max() < 1e-9 and a.verdict in (b.verdict, "undecided")
+    coarse = dict(dt=0.1, gradient="central2", gradient_step=0.5)
+    a, b = (nevh.solve(FORMULA, (0, 10), [1, 0], method, **coarse) for method in
+            (one, "verlet"))
+    fine = nevh.solve(FORMULA, (0, 10), [1, 0], one, dt=0.1)
+    assert abs(a.y - b.y).max() < 1e-9 < 1e-3 < abs(a.y - fine.y).max()
+    given, chosen = (nevh.solve("pendulum", method=method) for method in (one, "verlet"))
+    assert given.dt == chosen.dt and given.gradient == chosen.gradient
     mixed = "(1 + x^2)*p_x^2/2 + x^2/2"
     a, b = (nevh.solve(mixed, (0, 5), [1, 0], method, dt=0.05) for method in
             (three, "midpoint"))
@@ -134,7 +141,7 @@ def test_compared_with_its_parts():
 
 def test_functions_refuse_what_they_do_not_take():
     mine = nevh.Integrator("mine", step=leapfrog)
-    for named in ({"rtol": 1e-3}, {"atol": 1e-3}, {"max_step": 0.1}, {"gradient_step": 0.1}):
+    for named in ({"rtol": 1e-3}, {"atol": 1e-3}, {"max_step": 0.1}):
         raised(nevh.Refused, "takes dt", nevh.solve, FORMULA, (0, 1), [1, 0], mine, dt=0.1,
                **named)
     raised(nevh.Refused, "no gradient 'centrl2'", nevh.solve, FORMULA, (0, 1), [1, 0], mine,
