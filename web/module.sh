@@ -33,7 +33,7 @@ compile() {
     esac
     $CC --target=wasm32-wasi --sysroot="$WASM_SYSROOT" -flto $how -std=c11 \
         -ffp-contract=off -ffunction-sections -fdata-sections \
-        -DNDEBUG -DNEVH_PORTABLE -D_GNU_SOURCE \
+        -DNDEBUG -DNEVH_PORTABLE -D_GNU_SOURCE -D_WASI_EMULATED_SIGNAL \
         -isystem "$folder/include" -I"$srcdir/include" -I"$srcdir/lib" \
         -I"$srcdir/integrators" -I"$srcdir/web" \
         -c "$srcdir/$1" -o "$object" 2>"$object.log"
