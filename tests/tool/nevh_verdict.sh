@@ -284,4 +284,12 @@ exits 0 compare $work/late.nevh --integrators gauss4 --gradient exact
 tr '\n' ' ' <$work/out | tr -s ' ' >$work/all
 grep -q 'exceeds all energies when' $work/all || fails "tells nothing of the growth"
 grep -q 'level over the run, and up to' $work/all && fails "is level and exceeds"
+
+# A large error that is level in the longer run is not called unlimited.
+scene 'x = 1\np_x = 0.1' 'K = p_x^2/2\nV = x^4/4\nD = -2*x*cos(1.3*t)' 't_end = 1800\ndt = 0.6' \
+    quartic
+exits 0 compare $work/quartic.nevh --integrators gauss4 --gradient exact
+tr '\n' ' ' <$work/out | tr -s ' ' >$work/all
+grep -q 'keeps the energy bounded' $work/all && grep -q 'exceeds all energies when' $work/all &&
+    fails "is bounded and exceeds"
 exit $status

@@ -129,19 +129,22 @@ void verdict_larger_words(const plan *p, const row rows[], size_t count,
             !(r->longer.max > larger * r->energy.max) ||
             r->longer.max <= r->longer.rounding)
             continue;
-        if (r->longer.max > r->longer.limit) {
+        bool leaves = verdict_leaves(r);
+        bool level = r->longer.last_fifth <= 2 * r->longer.first_fifth;
+        bool above = r->longer.max > r->longer.limit;
+        if (above && !level) {
             verdict_later_words(p, rows, count, r, words);
             continue;
         }
-        bool leaves = verdict_leaves(r);
-        bool level = r->longer.last_fifth <= 2 * r->longer.first_fifth;
         char *subject = verdict_subject(p, rows, count, r);
         char *until = verdict_until(p, r);
         list_print(words,
                    "%s: the energy error is at most %.1e in the run, and "
                    "%.1e when it is continued until t = %s%s.",
                    subject, r->energy.max, r->longer.max, until,
-                   leaves  ? ", where its energies are far larger"
+                   leaves ? ", where its energies are far larger"
+                   : above
+                       ? ", above all energies of the motion, and level since"
                    : level ? ", level since"
                            : "");
         free(subject);
