@@ -48,8 +48,8 @@ def sweep(scene: str | os.PathLike | Scene, vary: Any = None,
     Returns an array with a field for each name that is varied and each outcome, and
     `status`: 1 where a member is done, 2 where it failed, 3 where it has no start.
     A warning says how many members failed, and why the first did.  The interrupt key
-    lets the members under way end; the exception's `result` is the array, with status
-    0 of those that did not begin.
+    ends the sweep; the exception's `result` is the array, with status 0 of members that
+    are not done.
     """
     if np is None:
         raise ImportError("nevh.sweep needs NumPy")
