@@ -2,12 +2,18 @@
 # installed.  make install pythondir=DIR puts it elsewhere.
 pythondir = $(pkgdatadir)/python
 dist_python_DATA = python/who-keeps-the-energy.ipynb python/your-own-integrator.ipynb
+python_sheetsdir = $(pythondir)/sheets
+dist_python_sheets_DATA = python/sheets/sheet-1.ipynb python/sheets/sheet-2.ipynb \
+	python/sheets/sheet-3.ipynb python/sheets/sheet-4.ipynb \
+	python/sheets/sheet-5.ipynb python/sheets/sheet-6.ipynb \
+	python/sheets/sheet-7.ipynb python/sheets/sheet-8.ipynb
 python_packagedir = $(pythondir)/nevh
 dist_python_package_DATA = $(python_package)
 python_package = \
 	python/nevh/__init__.py \
 	python/nevh/__init__.pyi \
 	python/nevh/_arrays.py \
+	python/nevh/_command_line.py \
 	python/nevh/_commands.py \
 	python/nevh/_events.py \
 	python/nevh/_functions.py \
@@ -28,7 +34,7 @@ python_package = \
 	python/nevh/_traced.py \
 	python/nevh/_twin.py \
 	python/nevh/py.typed
-EXTRA_DIST += python/pyproject.toml python/setup.py python/stage.sh python/stub.py \
+EXTRA_DIST += python/pyproject.toml python/setup.py python/stage.sh python/sheets.py python/stub.py \
 	tests/python/find_python.sh
 
 # A folder that runs wherever it is moved to: what a wheel and make portable hold.
@@ -55,7 +61,7 @@ portable_name = $(PACKAGE)-$(VERSION)-portable
 portable: python/nevh_files
 	rm -rf $(portable_name) && cp -R python/nevh_files $(portable_name)
 	$(MKDIR_P) $(portable_name)/share/nevh/python $(portable_name)/share/doc/nevh
-	cp -R $(srcdir)/python/nevh $(srcdir)/python/*.ipynb \
+	cp -R $(srcdir)/python/nevh $(srcdir)/python/sheets $(srcdir)/python/*.ipynb \
 	  $(portable_name)/share/nevh/python/
 	cp $(srcdir)/README.md $(srcdir)/COPYING $(portable_name)/share/doc/nevh/
 	-$(MAKE) html $(sheets_html) && \

@@ -11,6 +11,7 @@ import json
 import math
 import os
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -20,6 +21,7 @@ from typing import Any
 
 from ._library import _closest, Error, Failed, gradient_names, _lib, _name_list, Refused, _text, _trees
 from ._scene import _assign, _is_row, _scene, _starts, _value
+from ._command_line import call_of
 from ._own import Integrator, rows_of_functions
 from ._table import Table, Text
 
@@ -174,30 +176,8 @@ def _documentation(of, signature):
 
 def _example(of):
     """The first example of the help as a call."""
-    import shlex
-    words = shlex.split(of["examples"][0]) if of["examples"] else []
-    if len(words) < 3:
-        return ""
-    arguments, flags = [], iter(words[2:])
-    listed = _list()[1]
-    for word in flags:
-        if word.startswith("-"):
-            name = {"-o": "output"}.get(word, word.lstrip("-"))
-            value = "True" if listed[name]["argument"] is None else next(flags)
-            if listed[name]["argument"] is not None and not _is_number(value):
-                value = repr(value)
-            arguments.append("%s=%s" % (_here(name), value))
-        else:
-            arguments.append(repr(word))
-    return "nevh.%s(%s)" % (of["name"], ", ".join(arguments))
-
-
-def _is_number(text):
-    try:
-        float(text)
-        return True
-    except ValueError:
-        return False
+    words = shlex.split(of["examples"][0])[1:] if of["examples"] else []
+    return call_of(words, *_list(), _here, ["output"]) if len(words) > 1 else ""
 
 
 def _several(value):

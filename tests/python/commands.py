@@ -10,6 +10,8 @@ import inspect
 import json
 import os
 import pickle
+import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -147,6 +149,63 @@ def test_types():
                           stdout=subprocess.PIPE, encoding="utf-8", check=True).stdout
     with open(os.path.join(sources, "python/nevh/__init__.pyi"), encoding="utf-8") as file:
         assert file.read() == made, "run python/stub.py"
+
+
+def options_of(words):
+    """{(option, value)} of words, numbers as numbers, --set a=1,b=2 as two."""
+    found, words = set(), iter(words)
+    for word in words:
+        if word == "--":
+            break
+        name = {"-o": "output"}.get(word, word.lstrip("-"))
+        if not word.startswith("-"):
+            continue
+        text = "" if _commands._list()[1][name]["argument"] is None else next(words)
+        if name in ("format", "quiet", "output", "keep-plot-script"):
+            continue
+        for part in re.split(r",(?=\s*\w+\s*=)" if name in ("set", "start") else "\n", text):
+            found.add((name, re.sub(
+                r"(?<![\w.])\d[\d.]*(?:e-?\d+)?(?!\w)",
+                lambda number: repr(float(number.group())), part.replace(" ", ""))))
+    return found
+
+
+def test_worksheets():
+    """The notebooks are those that sheets.py makes, and their calls run the commands of
+    the sheets."""
+    sys.path.insert(0, os.path.join(sources, "python"))
+    import sheets
+    texi = os.path.join(sources, "doc/sheets/sheets.texi")
+    sheets.main(texi, "sheets")
+    for k in range(1, 9):
+        name = "sheets/sheet-%d.ipynb" % k
+        with open(os.path.join(sources, "python", name), encoding="utf-8") as kept:
+            with open(name, encoding="utf-8") as made:
+                assert kept.read() == made.read(), "run python/sheets.py"
+    with open(texi, encoding="utf-8") as file:
+        examples = re.findall(r"^@example\n(nevh .*?)\n@end example", file.read(), re.S | re.M)
+    lines = re.sub(r"\\\n\s*", "", "\n".join(examples)).splitlines()
+    tried = 0
+    for words in (shlex.split(line)[1:] for line in lines):
+        call = _commands.call_of(words, *_commands._list(), _commands._here)
+        compile(call, "call", "eval")
+        if words[0] in ("sweep", "new") or ".nevh" in words[1]:
+            continue
+        recorded = []
+
+        class Recorder:
+            def __getattr__(self, name):
+                return lambda *given, **named: recorded.append((given, named))
+        eval(call, {"nevh": Recorder()})
+        of = _commands._list()[0][words[0]]
+        (given, named), = recorded
+        bound = _commands._signature(of).bind(*given, **named)
+        with tempfile.TemporaryDirectory() as folder:
+            made, names = _commands._words(of, dict(bound.arguments), folder)
+        assert names == [words[1]]
+        assert options_of(made) == options_of(words[2:]), (made, words)
+        tried += 1
+    assert tried > 30, tried
 
 
 def test_pictures():
