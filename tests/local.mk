@@ -261,13 +261,39 @@ dist_check_SCRIPTS = \
 	tests/robust/effects_off.sh \
 	tests/robust/valgrind.sh
 
-EXTRA_DIST += tests/support/constants.py tests/python/commands.py tests/python/own.py tests/python/wrong_calls.py tests/python/hamiltonians.py tests/python/module.py tests/python/programs.py tests/python/same_states.py tests/python/traced.py tests/build/outside.c tests/robust/long_sweeps.sh tests/support/interrupt.c tests/support/starve.c tests/support/rescale.awk tests/support/formula.h tests/support/formula_terms.h tests/support/memory.h tests/support/native.h tests/support/scene.h tests/support/shipped.h \
-EXTRA_DIST += tests/support/constants.py tests/python/commands.py tests/python/wrong_calls.py tests/python/hamiltonians.py tests/python/module.py tests/python/programs.py tests/python/same_states.py tests/python/traced.py tests/build/outside.c tests/robust/long_sweeps.sh tests/support/interrupt.c tests/support/starve.c tests/support/rescale.awk tests/support/formula.h tests/support/formula_terms.h tests/support/memory.h tests/support/native.h tests/support/scene.h tests/support/shipped.h \
-EXTRA_DIST += tests/native/step_header.c tests/support/constants.py tests/python/module.py tests/python/programs.py tests/python/same_states.py tests/build/outside.c tests/robust/long_sweeps.sh tests/support/interrupt.c tests/support/starve.c tests/support/rescale.awk tests/support/formula.h tests/support/formula_terms.h tests/support/memory.h tests/support/native.h tests/support/scene.h tests/support/shipped.h \
-	tests/support/nevh_support.sh tests/support/nevh_interrupt.sh \
-	tests/support/browser.mjs tests/support/chromium.mjs tests/support/firefox.mjs \
-	tests/support/websocket.mjs tests/support/try_page.mjs tests/support/try_axe.mjs \
-	tests/support/try_report.mjs tests/scene/bad tests/robust/fuzz
+EXTRA_DIST += \
+	tests/build/outside.c \
+	tests/native/step_header.c \
+	tests/python/commands.py \
+	tests/python/hamiltonians.py \
+	tests/python/module.py \
+	tests/python/own.py \
+	tests/python/programs.py \
+	tests/python/same_states.py \
+	tests/python/traced.py \
+	tests/python/wrong_calls.py \
+	tests/robust/fuzz \
+	tests/robust/long_sweeps.sh \
+	tests/scene/bad \
+	tests/support/browser.mjs \
+	tests/support/chromium.mjs \
+	tests/support/constants.py \
+	tests/support/firefox.mjs \
+	tests/support/formula.h \
+	tests/support/formula_terms.h \
+	tests/support/interrupt.c \
+	tests/support/memory.h \
+	tests/support/native.h \
+	tests/support/nevh_interrupt.sh \
+	tests/support/nevh_support.sh \
+	tests/support/rescale.awk \
+	tests/support/scene.h \
+	tests/support/shipped.h \
+	tests/support/starve.c \
+	tests/support/try_axe.mjs \
+	tests/support/try_page.mjs \
+	tests/support/try_report.mjs \
+	tests/support/websocket.mjs
 
 TESTS = $(all_suites) $(dist_check_SCRIPTS)
 TEST_EXTENSIONS = .sh

@@ -225,17 +225,32 @@ static bool plan_solver(nevh_work *w, family_plan *g) {
     return g->weights && g->lanes && g->solver && plan_sweeps(w, g);
 }
 
-nevh__tableau *nevh__stage_tableau_new(const nevh_integrator *scheme) {
-    size_t stages = (size_t)scheme->stages;
-    return scheme->kernel == &nevh__implicit_kernel
-               ? nevh__implicit_new(scheme->table)
-           : scheme->kernel == &nevh_gauss_kernel ? nevh__gauss_new(stages)
-           : scheme->kernel == &nevh_lobatto_kernel
-               ? nevh__lobatto_new(stages)
-               : nevh__implicit_euler_new(stages);
+static nevh__tableau *make_gauss(const nevh_integrator *scheme) {
+    return nevh__gauss_new((size_t)scheme->stages);
 }
 
-static int plan_on(nevh_work *w, size_t fewest, size_t most) {
+static nevh__tableau *make_lobatto(const nevh_integrator *scheme) {
+    return nevh__lobatto_new((size_t)scheme->stages);
+}
+
+static nevh__tableau *make_implicit_euler(const nevh_integrator *scheme) {
+    return nevh__implicit_euler_new((size_t)scheme->stages);
+}
+
+static nevh__tableau *make_of_table(const nevh_integrator *scheme) {
+    return nevh__implicit_new(scheme->table);
+}
+
+nevh__tableau *nevh__stage_tableau_new(const nevh_integrator *scheme) {
+    return scheme->kernel == &nevh__implicit_kernel ? make_of_table(scheme)
+           : scheme->kernel == &nevh_gauss_kernel   ? make_gauss(scheme)
+           : scheme->kernel == &nevh_lobatto_kernel
+               ? make_lobatto(scheme)
+               : make_implicit_euler(scheme);
+}
+
+static int plan_on(nevh_work *w, size_t fewest, size_t most,
+                   nevh__tableau *(*make)(const nevh_integrator *)) {
     size_t stages = (size_t)w->integrator->stages;
     if (stages < fewest || stages > most)
         return nevh_work_fail(w, NEVH_EINVAL,
@@ -246,7 +261,7 @@ static int plan_on(nevh_work *w, size_t fewest, size_t most) {
         return status;
     family_plan *g = w->plan = nevh__array(1, sizeof *g);
     if (g)
-        g->tableau = nevh__stage_tableau_new(w->integrator);
+        g->tableau = make(w->integrator);
     if (!g || !plan_solver(w, g))
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     w->memory_rows = 2 * w->n + g->tableau->steps * g->unknown + 3;
@@ -255,15 +270,19 @@ static int plan_on(nevh_work *w, size_t fewest, size_t most) {
 }
 
 static int plan_gauss(nevh_work *w) {
-    return plan_on(w, 1, NEVH__MOST_STAGES);
+    return plan_on(w, 1, NEVH__MOST_STAGES, make_gauss);
 }
 
 static int plan_lobatto(nevh_work *w) {
-    return plan_on(w, 2, NEVH__MOST_STAGES);
+    return plan_on(w, 2, NEVH__MOST_STAGES, make_lobatto);
 }
 
 static int plan_implicit_euler(nevh_work *w) {
-    return plan_on(w, 1, 1);
+    return plan_on(w, 1, 1, make_implicit_euler);
+}
+
+static int plan_table(nevh_work *w) {
+    return plan_on(w, 1, NEVH__MOST_STAGES, make_of_table);
 }
 
 /* The evaluations that moved the state: one a stage. */
@@ -363,7 +382,7 @@ const nevh_kernel nevh_implicit_euler_kernel = {.plan = plan_implicit_euler,
                                                 .clear = clear,
                                                 .apply_friction =
                                                     apply_friction};
-const nevh_kernel nevh__implicit_kernel = {.plan = plan_gauss,
+const nevh_kernel nevh__implicit_kernel = {.plan = plan_table,
                                            .step = step,
                                            .clear = clear,
                                            .apply_friction = apply_friction};

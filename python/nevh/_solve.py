@@ -300,13 +300,13 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
     h = dt if t_end > t0 else -dt
     plan, method, gradient = _first_plan(subject, methods, gradient, y, t0, tolerance,
                                          gradient_step)
-    steps = _times_of_steps(t0, t_end, h)
+    keeps_steps = bool(found) or dense_output
+    steps = _times_of_steps(t0, t_end, h) if keeps_steps or t_eval is None else None
     t_eval = steps if t_eval is None else _times_to_keep(t_eval, t0, t_end)
     if found:
         observe, every = _watch_both(found, observe, every), 1
     elif observe is None:
         every = 16 if tolerance else 512
-    keeps_steps = bool(found) or dense_output
     kept = _with_steps(t_eval, steps) if keeps_steps else t_eval
     status, result = _run_plan(plan, t0, t_end, h, kept, y, observe, every)
     result.update(method=getattr(method, "name", method), dt=dt, tolerance=tolerance,

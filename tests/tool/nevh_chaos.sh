@@ -104,7 +104,7 @@ exits 2 chaos henon-heiles --integrators verlett
 # An orbit that loses its energy is not one of H.
 lacks 'does not keep the energy'
 exits 0 chaos double-pendulum --integrators rk4 --dt 0.1 --t-end 1000
-has 'rk4 at dt = 0.1 does not keep the energy .error [0-9.]+ of its scale.: what'
+has 'rk4 at dt = 0.1 does not keep the energy .error [0-9.]+ of its scale.: the'
 exits 0 chaos double-pendulum --integrators rk4 --dt 0.1 --t-end 1000 --format csv
 has '^# rk4 at dt = 0.1 does not keep the energy'
 exits 0 chaos damped-driven-pendulum --t-end 300

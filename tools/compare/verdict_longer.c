@@ -132,7 +132,7 @@ void verdict_larger_words(const plan *p, const row rows[], size_t count,
         bool leaves = verdict_leaves(r);
         bool level = r->longer.last_fifth <= 2 * r->longer.first_fifth;
         bool above = r->longer.max > r->longer.limit;
-        if (above && !level) {
+        if (above && (leaves || !level)) {
             verdict_later_words(p, rows, count, r, words);
             continue;
         }

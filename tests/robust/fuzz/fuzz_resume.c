@@ -119,7 +119,7 @@ static void go_on(unsigned how, const uint8_t *bytes, size_t size) {
     line_file lines;
     insist(lines_open(&lines, "/dev/null") == TOOL_OK);
     trajectory *r =
-        trajectory_new(p, name, *stepper, &rows, (sink){.lines = &lines});
+        trajectory_new(p, name, *stepper, &rows, (row_output){.lines = &lines});
     run_state *s = trajectory_state(r);
     take(s, bytes, size);
     if (how >> 2 & 1) /* the time of that step */
