@@ -156,25 +156,9 @@ def listing(rounds):
 
 # A double pendulum.
 
-def double_pendulum(t, y, g=9.8):
-    a, b, p, r = y
-    s = math.sin(a - b)
-    return ((p * p + 2 * r * r - 2 * p * r * math.cos(a - b)) / (2 * (1 + s * s))
-            - g * (2 * math.cos(a) + math.cos(b)))
-
-
-def by_hand(t, y, g=9.8):
-    a, b, p, r = y
-    s, c = math.sin(a - b), math.cos(a - b)
-    d = 1 + s * s
-    h1 = p * r * s / d
-    h2 = s * c * (p * p + 2 * r * r - 2 * p * r * c) / (d * d)
-    return [(p - r * c) / d, (2 * r - p * c) / d,
-            -2 * g * math.sin(a) - h1 + h2, -g * math.sin(b) + h1 - h2]
-
-
 def pendulum(rounds):
     from scipy.integrate import solve_ivp
+    from python import by_hand, value as double_pendulum
     start, aim = [math.pi / 2, 0, 0, 0], 1e-9
     for until in (20, 40):
         exact = nevh.solve(double_pendulum, (0, until), start, "taylor",

@@ -140,4 +140,5 @@ def main():
     many_orbits(rounds)
 
 
-main()
+if __name__ == "__main__":
+    main()

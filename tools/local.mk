@@ -147,6 +147,8 @@ tools_nevh_SOURCES = \
 	tools/orbit/portrait_equilibria.c \
 	tools/orbit/portrait_levels.c \
 	tools/orbit/frequencies_command.c \
+	tools/orbit/frequencies_private.h \
+	tools/orbit/frequencies_words.c \
 	tools/fit/measured.h \
 	tools/fit/measured.c \
 	tools/fit/residuals.c \

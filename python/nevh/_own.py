@@ -64,32 +64,21 @@ class Integrator:
                 raise TypeError("step is a function, not %r" % (step,))
             self.text = ""
             return
-        lines = ["[integrator %s]" % name]
         if given[0] == "kick and drift":
-            lines += ["first = " + _text("first", first)]
-            lines += [_line("kick", kick), _line("drift", drift)]
+            lines = ["first = " + _text("first", first), _line("kick", kick),
+                     _line("drift", drift)]
         elif given[0] == "compose":
-            if not hasattr(compose, "items") or len(compose) != 1:
-                raise TypeError("compose is {name of an integrator: weights}, not %.80r"
-                                % (compose,))
-            (base, weights), = compose.items()
-            if getattr(base, "step", None):
-                raise Refused("%s is a function: a composition takes integrators by numbers"
-                              % base.name)
-            lines.append("compose = %s: %s" % (
-                getattr(base, "name", base), _line("step", weights).partition("= ")[2]))
-            if isinstance(base, Integrator):
-                lines.insert(0, base.text)
+            lines = _composition(compose)
         else:
-            if a is None:
-                raise TypeError("b goes with a, the rows of the table: a=[[0]] is Euler's")
-            lines += [line for line in (
-                "a = " + (" ; ".join(_line("a", row).partition("= ")[2] for row in a)
-                          or "0"),
-                _line("b", b), c is not None and _line("c", c)) if line]
-        self.text = "\n".join(lines) + "\n"
-        self._scene = Scene("[coordinates]\nq = 0\n[effects]\nT = p_q^2/2\n" + self.text)
-        self._pointer = _lib.scene_integrator_named(self._scene._made, name.encode())
+            lines = _tableau(a, b, c)
+        before = getattr(next(iter(compose or ()), None), "text", "")
+        self._take("%s[integrator %s]\n%s\n" % (before, name, "\n".join(lines)))
+
+    def _take(self, text):
+        """The scheme of a section of this name, and what follows from its numbers."""
+        self.text = text
+        self._scene = Scene("[coordinates]\nq = 0\n[effects]\nT = p_q^2/2\n" + text)
+        self._pointer = _lib.scene_integrator_named(self._scene._made, self.name.encode())
         self._read_facts()
 
     def _read_facts(self):
@@ -122,10 +111,8 @@ class Integrator:
 
 def _again(name, text):
     made = Integrator.__new__(Integrator)
-    made.name, made.step, made.text = name, None, text
-    made._scene = Scene("[coordinates]\nq = 0\n[effects]\nT = p_q^2/2\n" + text)
-    made._pointer = _lib.scene_integrator_named(made._scene._made, name.encode())
-    made._read_facts()
+    made.name, made.step = name, None
+    made._take(text)
     return made
 
 
@@ -133,12 +120,37 @@ def _function_again(name, step):
     return Integrator(name, step=step)
 
 
+def _composition(compose):
+    """The line of {name of an integrator, or an Integrator: weights}."""
+    if not hasattr(compose, "items") or len(compose) != 1:
+        raise TypeError("compose is {name of an integrator: weights}, not %.80r"
+                        % (compose,))
+    (base, weights), = compose.items()
+    if getattr(base, "step", None):
+        raise Refused("%s is a function: a composition takes integrators by numbers"
+                      % base.name)
+    return ["compose = %s: %s" % (getattr(base, "name", base), _weights("step", weights))]
+
+
+def _tableau(a, b, c):
+    """The lines of a Butcher table."""
+    if a is None:
+        raise TypeError("b goes with a, the rows of the table: a=[[0]] is Euler's")
+    rows = " ; ".join(_weights("a", row) for row in a)
+    return ["a = " + (rows or "0"), _line("b", b)] + (
+        [_line("c", c)] if c is not None else [])
+
+
 def _line(name, values):
+    return "%s = %s" % (name, _weights(name, values))
+
+
+def _weights(name, values):
     if isinstance(values, str) or not hasattr(values, "__iter__"):
         raise TypeError("%s is a list of weights, not %.80r" % (name, values))
-    return "%s = %s" % (name, ", ".join(
+    return ", ".join(
         one if isinstance(one, str) else str(one) if hasattr(one, "numerator") and
-        not isinstance(one, float) else _value(name, one) for one in values))
+        not isinstance(one, float) else _value(name, one) for one in values)
 
 
 # Steps by a function.
