@@ -4,6 +4,8 @@
 # noise over the same orbit, computed by Taylor series.  Prints a row a number; fails
 # where a share is farther from 95 % than three standard deviations of that many draws,
 # or 3 % if that is less.
+#
+# fit.sh scene SYSTEM prints a scene.
 
 nevh=$1 add_noise=$2 draws=${3:-400}
 systems=${4:-anharmonic filmed kepler driven coupled}
@@ -98,6 +100,11 @@ END
         ;;
     esac
 }
+
+if test "$1" = scene; then
+    make "$2"
+    exit
+fi
 
 settings() {
     set= guess=

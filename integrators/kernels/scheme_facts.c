@@ -129,12 +129,10 @@ int nevh__runge_kutta_facts(size_t stages, const long double a[],
 static int facts_of_table(nevh__numbers *x, nevh_scheme_facts *to) {
     if (!x->operations && !x->stages)
         return NEVH_EINVAL;
-    int status =
-        x->operations
-            ? nevh__splitting_facts(
-                  &(nevh__operations){x->first, x->operations, x->weights}, to)
-            : nevh__runge_kutta_facts(x->stages, x->a, x->b, to);
-    return status;
+    if (!x->operations)
+        return nevh__runge_kutta_facts(x->stages, x->a, x->b, to);
+    nevh__operations all = {x->first, x->operations, x->weights};
+    return nevh__splitting_facts(&all, to);
 }
 
 int nevh_integrator_facts(const nevh_integrator *scheme,

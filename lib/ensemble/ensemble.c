@@ -282,8 +282,8 @@ void nevh_ensemble_free(nevh_ensemble *e) {
     free(e);
 }
 
-void nevh__ensemble_heed(nevh_ensemble *e,
-                         const volatile sig_atomic_t *ending) {
+void nevh__ensemble_set_stop(nevh_ensemble *e,
+                             const volatile sig_atomic_t *ending) {
     if (e)
         e->ending = ending;
 }

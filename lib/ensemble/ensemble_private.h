@@ -91,7 +91,7 @@ struct nevh_ensemble {
     nevh__refused_fn refused;
     void *data;
     bool stopped;
-    const volatile sig_atomic_t *ending; /* nevh__ensemble_heed; or NULL */
+    const volatile sig_atomic_t *ending; /* nevh__ensemble_set_stop; or NULL */
     nevh__report report;
 };
 

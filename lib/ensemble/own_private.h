@@ -33,6 +33,7 @@ bool nevh__ensemble_may_vary(const nevh_ensemble *);
 bool nevh__ensemble_may_vary_compiled(const nevh_ensemble *);
 
 /* Orbits under way are left, soon, once *ending is not 0. */
-void nevh__ensemble_heed(nevh_ensemble *, const volatile sig_atomic_t *ending);
+void nevh__ensemble_set_stop(nevh_ensemble *,
+                             const volatile sig_atomic_t *ending);
 
 #endif

@@ -177,7 +177,7 @@ static nevh_ensemble *open(nevh_sweep *s, const nevh__variant *x,
             is.width = 1;
         e = nevh_ensemble_new(x->model->system, &is);
     }
-    nevh__ensemble_heed(e, &s->ending);
+    nevh__ensemble_set_stop(e, &s->ending);
     free(room);
     if (!e || nevh_ensemble_status(e))
         nevh__fail(report, nevh_ensemble_status(e), "%s",

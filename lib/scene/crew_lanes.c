@@ -117,7 +117,7 @@ void nevh__lane_members_open(nevh__worker *w) {
             w->sweep, &w->lanes.form.base, &o, w->lanes.plan_at);
         e = nevh_ensemble_new(w->lanes.form.system, &is);
     }
-    nevh__ensemble_heed(e, &w->sweep->ending);
+    nevh__ensemble_set_stop(e, &w->sweep->ending);
     if (nevh__ensemble_vary(e, own_of, leave))
         w->lanes.ensemble = e;
     else

@@ -116,23 +116,7 @@ done
 # Much noise: k and F of a driven spring lie along a curved valley, with other minima
 # far away, also where the drive is too fast for these points; the first draw has the
 # lowest sum at k = 3.7, the second at w = 2e5.
-cat >$work/driven.nevh <<'END'
-[parameters]
-k = 1
-c = 0.2
-F = 0.3
-w = 0.6
-[coordinates]
-x = 0.5
-[effects]
-K = p_x^2/2
-V = k*x^2/2 + c*x^4/4
-D = -F*x*cos(w*t)
-[run]
-t_end = 15
-dt = 0.1
-integrators = verlet
-END
+sh "$srcdir/bench/fit.sh" scene driven >$work/driven.nevh || fails "there is no scene"
 "$nevh" run $work/driven.nevh --samples 61 --integrators gauss8 --quiet >$work/driven.csv
 for seed in 24 36; do
     ./examples/add_noise 0.1 $seed x <$work/driven.csv | sed 2d >$work/draw.csv
