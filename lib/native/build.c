@@ -105,7 +105,7 @@ static void *open_library(const char *path, char why[NEVH__WHY_NATIVE]) {
 }
 
 static bool write_source(const char *path, const char *source) {
-    FILE *file = fopen(path, "w");
+    FILE *file = fopen(path, "we");
     bool fine = file && fputs(source, file) >= 0;
     return file && fclose(file) == 0 && fine;
 }

@@ -99,7 +99,7 @@ static bool is_own(const char *path) {
 /* To be freed; NULL: it cannot be read, or is too large. */
 static char *read_file(const char *path, size_t *count) {
     struct stat found;
-    FILE *file = fopen(path, "rb");
+    FILE *file = fopen(path, "rbe");
     char *bytes = NULL;
     if (!file)
         return NULL;

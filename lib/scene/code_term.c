@@ -213,7 +213,7 @@ static bool digest_file(nevh_scene *s, const nevh__piece *name,
     if (there && !S_ISREG(found.st_mode))
         return nevh__scene_fail(s, NEVH_EINVAL, name, "%s is no regular file",
                                 path);
-    FILE *file = there ? fopen(path, "r") : NULL;
+    FILE *file = there ? fopen(path, "re") : NULL;
     if (!file)
         return nevh__scene_fail(s, NEVH_EINVAL, name, "%s cannot be read: %s",
                                 path, strerror(errno));

@@ -149,7 +149,7 @@ static char *read_all(nevh_scene *s, FILE *file, size_t *bytes) {
 
 #ifdef __wasm__
 static FILE *open_file(const char *path) {
-    return fopen(path, "rb");
+    return fopen(path, "rbe");
 }
 #else
 /* Pipes are not waited for without end. */

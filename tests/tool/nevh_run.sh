@@ -382,4 +382,13 @@ for run in "pendulum --integrators gauss8 --dt 0.001 --t-end 100 --at 0.5,1,99" 
     cp $work/x.state $work/x.csv.state
     exits 0 run $run --resume $work/x.csv
 done
+
+# A compiler that was started in the background holds no file of a run that ends.
+printf '#!/bin/sh\nsleep 9\n' >$work/slow-cc
+chmod +x $work/slow-cc
+XDG_CACHE_HOME=$work/empty CC=$work/slow-cc
+export XDG_CACHE_HOME CC
+run='pendulum --integrators gauss8 --dt 0.001 --t-end 100'
+must_stop $KILL INTERRUPT_STEP=60000 run $run -o $work/x.csv
+exits 0 run $run --resume $work/x.csv
 exit $status

@@ -22,7 +22,7 @@ static char *text_from(const options *o, const char *file) {
 
 /* Writes a new file only; an incomplete one is removed. */
 static int write_new(const char *file, const char *text) {
-    FILE *f = fopen(file, "wx");
+    FILE *f = fopen(file, "wxe");
     if (!f)
         return errno == EEXIST
                    ? tool_refuse(

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* mkstemp lets only the owner read.  A file that is replaced keeps its mode. */
+/* mkostemp lets only the owner read.  A file that is replaced keeps its mode. */
 static void allow_as_usual(int file, const char *replaced) {
     struct stat found;
     mode_t mask = umask(0);
@@ -166,7 +166,8 @@ static void open_temporary(output *o) {
     o->temporary = temporary_name(o->name);
     watch_the_end();
     sigprocmask(SIG_BLOCK, &all, &before);
-    int file = mkstemp(o->temporary);
+    int file =
+        mkostemp(o->temporary, O_CLOEXEC); /* no compiler keeps its lock */
     if (file >= 0)
         remember(NULL, o->temporary);
     sigprocmask(SIG_SETMASK, &before, NULL);
@@ -211,7 +212,7 @@ int output_open(output *o, const char *name) {
     if (can_be_replaced(o->name))
         open_temporary(o);
     else
-        o->stream = fopen(o->name, "w");
+        o->stream = fopen(o->name, "we");
     if (o->stream)
         return TOOL_OK;
     tool_refuse("%s cannot be written: %s", name, strerror(errno));

@@ -24,7 +24,7 @@ typedef struct {
 
 static char *whole_file(const char *name) {
     char *file = data_file(name);
-    FILE *f = fopen(file, "r");
+    FILE *f = fopen(file, "re");
     const char *why = f ? NULL : strerror(errno);
     free(file);
     size_t room = 1 << 16, used = 0;

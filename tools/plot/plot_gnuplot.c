@@ -113,7 +113,7 @@ static int run_heard(char *const arguments[], FILE *in, FILE *out) {
 
 int gnuplot_check(void) {
     char *const arguments[] = {"gnuplot", "--version", NULL};
-    FILE *nothing = fopen("/dev/null", "r+");
+    FILE *nothing = fopen("/dev/null", "r+e");
     if (!nothing)
         return tool_refuse("/dev/null cannot be opened: %s", strerror(errno));
     int status = run_heard(arguments, nothing, nothing);

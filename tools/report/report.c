@@ -101,7 +101,7 @@ enum {
 };
 
 char *text_read(const char *name) {
-    FILE *f = fopen(name, "rb");
+    FILE *f = fopen(name, "rbe");
     size_t used = 0, room = 1 << 16, count = 1;
     char *text = f ? tool_allocate(room, 1) : NULL;
     while (text && (count = fread(text + used, 1, room - used - 1, f)) > 0) {
@@ -151,8 +151,8 @@ static char *command_of(const report_job *w, const char *scene,
 
 /* Runs a command with stderr in a file; -1 where that cannot be. */
 static int run_heard(report_job *w, const command *c, const options *o) {
-    int kept = dup(STDERR_FILENO), status = -1;
-    FILE *heard = fopen(w->messages, "w");
+    int kept = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0), status = -1;
+    FILE *heard = fopen(w->messages, "we");
     fflush(stderr);
     if (kept >= 0 && heard && dup2(fileno(heard), STDERR_FILENO) >= 0) {
         w->terminal = kept;
@@ -329,7 +329,7 @@ static void remove_folder(const report_job *w) {
 /* Copies the messages of a part to the terminal when it ends the program. */
 static void copy_messages(const report_job *w) {
     char text[512];
-    int file = w->terminal < 0 ? -1 : open(w->messages, O_RDONLY);
+    int file = w->terminal < 0 ? -1 : open(w->messages, O_RDONLY | O_CLOEXEC);
     for (ssize_t bytes = 0; file >= 0 && bytes >= 0;) {
         bytes = read(file, text, sizeof text);
         if (bytes <= 0 || write(w->terminal, text, (size_t)bytes) < 0)
