@@ -21,6 +21,7 @@ python_package = \
 	python/nevh/_graph_text.py \
 	python/nevh/_hgrad.py \
 	python/nevh/_library.py \
+	python/nevh/_looks.py \
 	python/nevh/_own.py \
 	python/nevh/_plot.py \
 	python/nevh/_run.py \
@@ -34,7 +35,7 @@ python_package = \
 	python/nevh/_traced.py \
 	python/nevh/_twin.py \
 	python/nevh/py.typed
-EXTRA_DIST += python/pyproject.toml python/setup.py python/stage.sh python/sheets.py python/stub.py \
+EXTRA_DIST += python/pyproject.toml python/setup.py python/stage.sh python/sheets.py python/stub.py python/looks.awk \
 	tests/python/find_python.sh
 
 # A folder that runs wherever it is moved to: what a wheel and make portable hold.

@@ -112,6 +112,8 @@ tools_nevh_SOURCES = \
 	tools/plot/plot_layout.c \
 	tools/plot/plot_script.c \
 	tools/plot/plot_series.c \
+	tools/plot/looks.h \
+	tools/plot/looks.c \
 	tools/plot/plot_forms.c \
 	tools/plot/plot_guides.c \
 	tools/plot/plot_svg.c \

@@ -5,15 +5,8 @@ SPDX-License-Identifier: GPL-3.0-or-later
 
 from __future__ import annotations
 
-from ._library import integrators, Refused
-
-# Those of the command's pictures, which colour-blind eyes tell apart, and marks.
-_colours = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#E69F00", "#56B4E9")
-_marks = "osD^vP*X"
-
-# Integrators that often stand side by side: the first seven have a colour each.
-_often = ["verlet", "rk4", "gauss4", "midpoint", "euler", "blanes-moan4", "taylor",
-          "gauss6", "dop853", "heun", "forest-ruth", "pefrl", "implicit-euler", "dopri5"]
+from ._library import Refused
+from ._looks import colours as _colours, looks as _looks, marks as _marks
 
 # Columns x, y and by, and which axes are logarithmic, for tables that have x and y.
 _pictures = (
@@ -40,9 +33,11 @@ def _axes(ax):
 
 def style(name):
     """The colour and the mark of an integrator, the same in all pictures."""
-    known = list(dict.fromkeys(_often + integrators()))
-    k = known.index(name) if name in known else sum(map(ord, str(name)))
-    return {"color": _colours[k % len(_colours)], "marker": _marks[k % len(_marks)]}
+    plain = str(name).partition("+")[0]
+    k = _looks.index(plain) if plain in _looks else sum(map(ord, plain))
+    mark = _marks[k % len(_marks)].split()
+    return {"color": _colours[k % len(_colours)], "marker": mark[0],
+            "fillstyle": "none" if mark[1:] else "full"}
 
 
 def plot_table(table, x, y, by, ax):

@@ -149,6 +149,11 @@ def test_types():
                           stdout=subprocess.PIPE, encoding="utf-8", check=True).stdout
     with open(os.path.join(sources, "python/nevh/__init__.pyi"), encoding="utf-8") as file:
         assert file.read() == made, "run python/stub.py"
+    made = subprocess.run(["awk", "-f", os.path.join(sources, "python/looks.awk"),
+                           os.path.join(sources, "tools/plot/looks.h")],
+                          capture_output=True, text=True, check=True).stdout
+    with open(os.path.join(sources, "python/nevh/_looks.py"), encoding="utf-8") as file:
+        assert file.read() == made, "run awk -f python/looks.awk"
 
 
 def options_of(words):

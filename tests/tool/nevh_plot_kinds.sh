@@ -15,7 +15,7 @@ between() {
 # The state errors of a harmonic oscillator have the scheme's order, and the
 # energy errors too; that of rk4 drifts, which takes one more.
 exits 0 compare oscillator --integrators verlet,rk4,gauss4,dopri5 --t-end 10 \
-    --dt 0.1,0.05,0.025,0.0125 --plot-kind order --plot $svg
+    --dt 0.1,0.05,0.025,0.0125,0.00625 --plot-kind order --plot $svg
 between "$(slope verlet 1)" 1.95 2.05 "a slope of verlet's energy error"
 between "$(slope verlet 2)" 1.95 2.05 "a slope of verlet's state error"
 between "$(slope rk4 1)" 4.95 5.05 "a slope of rk4's energy error"
@@ -24,9 +24,21 @@ texts | grep -q 'dopri5' && fails "draws a scheme that chooses its steps"
 texts | grep -q 'choose their steps are left out' || fails "does not say so"
 # Rounding has no slope: midpoint keeps a quadratic H.
 exits 0 compare oscillator --integrators verlet,midpoint --t-end 10 \
-    --dt 0.1,0.05,0.025 --plot-kind order --plot $svg
+    --dt 0.1,0.05,0.025,0.0125,0.00625 --plot-kind order --plot $svg
 texts | grep -q '^midpoint: slopes -, 2.0' ||
     fails "has another slope of midpoint's: $(texts | grep ^midpoint)"
+# Where no steps are given there are five; with fewer no slope is fitted, and none to
+# state errors that are as large as the orbit.
+exits 0 compare oscillator --integrators verlet --plot-kind order --plot $svg
+between "$(slope verlet 2)" 1.9 2.1 "by default a slope of verlet's state error"
+exits 0 compare oscillator --integrators verlet --t-end 10 --dt 0.1,0.05,0.025,0.0125 \
+    --plot-kind order --plot $svg
+texts | grep -q 'a slope needs five steps' || fails "does not say what a slope needs"
+texts | grep -q 'verlet: slope' && fails "fits a slope to four steps"
+exits 0 compare oscillator --integrators verlet --t-end 1000 --dt 0.2,0.16,0.12,0.09,0.08 \
+    --plot-kind order --plot $svg
+texts | grep -q '^verlet: slopes [12].[0-9]*, -$' ||
+    fails "fits a slope to saturated errors: $(texts | grep ^verlet)"
 exits 0 cost oscillator --integrators verlet,rk4 --plot-kind order --plot $svg
 between "$(slope verlet 1)" 1.9 2.1 "a slope of verlet's in cost"
 exits 2 compare oscillator --dt 0.1 --plot-kind order --plot $svg
@@ -36,15 +48,45 @@ says 'is for nevh compare and nevh cost'
 exits 2 compare oscillator --plot-kind phase --plot $svg
 says 'is order, or not given'
 
+# All integrators have a look, each one of its own.
+sed -n 's/^    X("\([a-z0-9-]*\)") *\\*$/\1/p' "$srcdir/tools/plot/looks.h" | sort >$work/looks
+exits 0 list integrators --format csv
+sed -n '/^[a-z]/s/,.*//p' $work/out | sed 1d | sort >$work/names
+cmp -s $work/looks $work/names || { fails "integrators and looks differ"; diff $work/looks $work/names; }
+
+# An integrator has one colour in all pictures, whatever stands beside it; eight that
+# are often compared have eight.
+colour() { # NAME
+    awk -v name="<title>$1<" 'index($0, name) { found = 1 }
+        found && match($0, /#[0-9A-F]+/) { print substr($0, RSTART, RLENGTH); exit }' $svg
+}
+often=verlet,rk4,gauss4,midpoint,euler,blanes-moan4,gauss6,gauss8
+exits 0 compare oscillator --t-end 10 --dt 0.1 --integrators $often --plot $svg
+for name in $(echo $often | tr , ' '); do
+    colour $name
+done >$work/colours
+test "$(sort -u $work/colours | grep -c '#')" = 8 || fails "has other colours: $(cat $work/colours)"
+rk4=$(sed -n 2p $work/colours)
+for kind in 'compare oscillator --t-end 10 --dt 0.1,0.05' \
+    'run oscillator --t-end 10 --plot-kind time' 'run oscillator --t-end 10 --plot-kind energy' \
+    'cost oscillator --t-end 10 --budget 1'; do
+    exits 0 $kind --integrators gauss4,rk4 --plot $svg
+    test "$(colour rk4)" = "$rk4" || fails "draws rk4 in $(colour rk4), not $rk4"
+done
+# Another step of the same one differs in dashes and marks.
+exits 0 run oscillator --t-end 10 --integrators rk4 --dt 0.1,0.05 --plot-kind energy --plot $svg
+test "$(colour 'dt = 0.1 s') $(colour 'dt = 0.05 s')" = "$rk4 $rk4" || fails "has other colours"
+
 # Each axis has two numbers or more, also where panels are low.
 exits 0 run henon-heiles --plot-kind time --t-end 100 --keep-plot-script $work/out.gp
 test "$(grep -c '^set ytics' $work/out.gp)" = 5 || fails "has other panels"
 awk '/^set [xy]tics/ && split($0, a, "\"") < 5 { few = 1 } END { exit few }' \
     $work/out.gp || { fails "has a single number at an axis"; grep '^set ytics' $work/out.gp; }
-# A narrow range of errors is in the middle of its axis.
+# A level error is a level line in the middle of its axis.
 exits 0 run pendulum --plot-kind energy --keep-plot-script $work/out.gp
 awk '/^set yrange/ { gsub("[^0-9.e-]", " "); low = $(NF - 1); high = $NF }
-    END { exit !(low > 0.055 && high < 0.073 && high > 0.068) }' $work/out.gp ||
+    END { middle = sqrt(low * high)
+          exit !(high / low > 10 && middle > 0.04 && middle < 0.1) }' $work/out.gp ||
     { fails "has another axis"; grep '^set yrange' $work/out.gp; }
 # What is beyond the times that are shown does not stretch the other axis.
 exits 0 effects kepler --impact --keep-plot-script $work/out.gp

@@ -261,8 +261,10 @@ static int compare_plan(const options *o, plan *p) {
 static int compare(const options *o) {
     plan p;
     int status = plan_make(&p, o);
-    if (!status)
+    if (!status) {
+        order_plot_steps(o, &p);
         status = compare_plan(o, &p);
+    }
     plan_free(&p);
     return status;
 }

@@ -38,7 +38,7 @@ static void draw_row(plot *to, const plan *p, const row *r) {
     char *name = r->tolerance > 0 && p->tolerances > 1
                      ? text_print("%s, %g", r->integrator, r->tolerance)
                      : text_print("%s", r->integrator);
-    energy_plot_add(to, name, r->errors);
+    energy_plot_add(to, name, r->integrator, r->errors);
     free(name);
 }
 

@@ -73,6 +73,7 @@ static void draw_orbit(plot *to, const orbit *o, size_t k, double period,
     size_t series = plot_series(to, name);
     bool whole = o->rows.part == 1;
     double last = 0;
+    plot_integrator(to, series, o->integrator);
     plot_style(to, series, whole ? PLOT_TRAIL : PLOT_DOTS);
     for (size_t i = 0; i < o->rows.count; i++) {
         const double *at = orbit_row(o, i) + k;

@@ -181,7 +181,7 @@ static void draw_energy(plot *to, const run_picture *picture, const orbit *o) {
         tool_refuse("%s: %s failed: %s", p->name, o->integrator,
                     nevh_stepper_message(s));
     energy_plot_add(to, picture->orbits.count > 1 ? o->name : NULL,
-                    trace.envelope);
+                    o->integrator, trace.envelope);
     nevh_energy_free(energy);
     nevh_stepper_free(s);
     free(trace.envelope);

@@ -131,6 +131,8 @@ static size_t new_series(plot *to, const run_picture *picture,
                        : count > 1 && !several ? c->columns.item[k].name
                                                : NULL;
     size_t series = plot_series(to, name);
+    if (several ? place == 0 : count == 1)
+        plot_integrator(to, series, o->integrator);
     if (several && place > 0) {
         plot_like(to, series, series - place * picture->orbits.count);
         plot_dash(to, series, place);

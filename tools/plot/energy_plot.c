@@ -4,8 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double absurd = 100; /* of an error relative to the energy */
-enum { MOST_POINTS = 300 };       /* of a line */
+static const double absurd = 100;     /* of an error relative to the energy */
+static const double least_range = 30; /* a level error is a level line */
+enum { MOST_POINTS = 300 };           /* of a line */
 
 /* True if a point stands for several steps. */
 static bool has_bins(const plan *p) {
@@ -39,6 +40,7 @@ static void set_axes(plot *to, const plan *p) {
     plot_log(to, false, true);
     plot_span_x(to, p->run->t_start, p->t_end);
     plot_limit_y(to, 0, absurd);
+    plot_least_y(to, least_range);
 }
 
 plot *energy_plot_new(const plan *p, const char *title, const char *heading) {
@@ -57,11 +59,30 @@ void energy_plot_panel(plot *to, const plan *p, const char *heading) {
     free(x);
 }
 
+/* Says where a line leaves the panel, and how far it goes. */
+static void add_exit(plot *to, const char *integrator, const envelope *e) {
+    double most = 0, left = NAN;
+    for (size_t i = 0; i < ENVELOPE_PARTS; i++) {
+        most = fmax(most, e->part[i].value);
+        if (isnan(left) && e->part[i].value > absurd)
+            left = e->part[i].t;
+    }
+    if (isnan(left))
+        return;
+    char *name = text_print("\u2191 %s: up to %.0e", integrator, most);
+    size_t series = plot_series(to, name);
+    plot_style(to, series, PLOT_GUIDE);
+    plot_point(to, series, left, absurd / 2);
+    free(name);
+}
+
 /* The largest of a few parts each where there are many, so that oscillations
    do not fill the panel. */
-void energy_plot_add(plot *to, const char *name, const envelope *e) {
+void energy_plot_add(plot *to, const char *name, const char *integrator,
+                     const envelope *e) {
     size_t parts = 0, largest = 0, seen = 0, series = plot_series(to, name);
-    plot_style(to, series, PLOT_MARKED);
+    plot_integrator(to, series, integrator);
+    plot_style(to, series, name ? PLOT_MARKED : PLOT_LINES);
     for (size_t i = 0; i < ENVELOPE_PARTS; i++)
         parts += e->part[i].value >= 0;
     size_t each = (parts + MOST_POINTS - 1) / MOST_POINTS;
@@ -73,4 +94,5 @@ void energy_plot_add(plot *to, const char *name, const envelope *e) {
         if (seen % each == 0 || seen == parts)
             plot_point(to, series, e->part[largest].t, e->part[largest].value);
     }
+    add_exit(to, integrator, e);
 }

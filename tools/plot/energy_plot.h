@@ -12,6 +12,7 @@ void energy_plot_panel(plot *, const plan *, const char *heading);
 /* The scale of the errors, and the steps per point, in words; to be freed. */
 char *energy_plot_words(const plan *);
 /* A line in the current panel; name: NULL is none. */
-void energy_plot_add(plot *, const char *name, const envelope *);
+void energy_plot_add(plot *, const char *name, const char *integrator,
+                     const envelope *);
 
 #endif

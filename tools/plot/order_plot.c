@@ -6,6 +6,8 @@
 #include <string.h>
 
 static const double useless = 1, rounding = 1e-13; /* as errors */
+static const double saturated = 0.1; /* above: no longer powers of dt */
+enum { ORDER_STEPS = 5 };            /* that a slope needs */
 
 /* Selects the error of a panel. */
 typedef double error_of(const row *);
@@ -31,6 +33,23 @@ typedef struct {
     size_t count, from, to; /* from, to: of the slope */
     double *dt, *error, slope;
 } curve;
+
+void order_plot_steps(const options *o, plan *p) {
+    static const double steps = 200; /* of the longest */
+    if (o->plot.kind != PLOT_ORDER || o->dt.count || !p->dts)
+        return;
+    double longest = p->dt[0];
+    for (size_t i = 1; i < p->dts; i++)
+        longest = fmax(longest, p->dt[i]);
+    free(p->given_dt);
+    p->given_dt = tool_allocate(ORDER_STEPS, sizeof *p->given_dt);
+    for (int i = 0; i < ORDER_STEPS; i++)
+        p->given_dt[i] = ldexp(longest, -i);
+    p->dt = p->given_dt;
+    p->dts = ORDER_STEPS;
+    if (!o->t_end)
+        p->t_end = fmin(p->t_end, p->run->t_start + steps * longest);
+}
 
 int order_plot_check(const options *o, size_t steps) {
     if (o->plot.kind == PLOT_ORDER && plot_wanted(o) && steps < 2)
@@ -64,15 +83,15 @@ static line fit(const double x[], const double y[], size_t from, size_t to) {
    on a rising line to a factor of 1.25.
    x         rising
    from, to  out: the neighbours; to: past the last
-   returns   NAN where no three (of two: both) are on such a line */
+   returns   NAN where no three are on such a line */
 static double order_slope(const double x[], const double y[], size_t count,
                           size_t *from, size_t *to) {
-    static const double near = 0.22, least = 0.5; /* log 1.25; of a slope */
+    static const double near = 0.22, least = 0.8; /* log 1.25; of a slope */
     static const double span = 1.5;               /* of x */
     double slope = NAN;
     *from = *to = 0;
     for (size_t i = 0; i < count; i++)
-        for (size_t k = count; k > i + (count > 2 ? 2 : 1); k--) {
+        for (size_t k = count; k > i + 2; k--) {
             line l = fit(x, y, i, k);
             bool good =
                 l.worst <= near && l.slope >= least && x[k - 1] > span * x[i];
@@ -111,7 +130,7 @@ static curve curve_of(const row rows[], size_t count, size_t first,
                       error_of *error) {
     curve c = {.dt = tool_allocate(count, sizeof *c.dt),
                .error = tool_allocate(count, sizeof *c.error)};
-    size_t above = 0; /* those that rounding makes */
+    size_t above = 0, below; /* those that rounding makes; saturated ones */
     for (size_t i = first; i < count; i++) {
         const row *r = &rows[i];
         double value = r->ran && r->tolerance == 0 ? error(r) : NAN;
@@ -120,8 +139,12 @@ static curve curve_of(const row rows[], size_t count, size_t first,
     }
     while (above < c.count && !(c.error[above] > rounding))
         above++;
-    c.slope = order_slope(c.dt + above, c.error + above, c.count - above,
-                          &c.from, &c.to);
+    for (below = c.count; below > above && c.error[below - 1] > saturated;)
+        below--;
+    c.slope = c.count < ORDER_STEPS
+                  ? NAN
+                  : order_slope(c.dt + above, c.error + above, below - above,
+                                &c.from, &c.to);
     c.from += above;
     c.to += above;
     return c;
@@ -176,13 +199,15 @@ static void draw_points(plot *to, size_t series, const curve *c, size_t from,
         plot_point(to, series, c->dt[i], c->error[i]);
 }
 
-static void draw_curve(plot *to, const char *name, const curve *c) {
+static void draw_curve(plot *to, const char *name, const char *integrator,
+                       const curve *c) {
     if (c->count < 2)
         return;
     size_t behind = plot_series(to, NULL);
     plot_style(to, behind, PLOT_BEHIND);
     draw_points(to, behind, c, c->from, c->to);
     size_t series = plot_series(to, name);
+    plot_integrator(to, series, integrator);
     plot_style(to, series, PLOT_BOTH);
     draw_points(to, series, c, 0, c->count);
 }
@@ -196,7 +221,7 @@ static void draw_panel(plot *to, const plan *p, const row rows[], size_t count,
         for (size_t k = 0; k < panels; k++)
             curves[k] = curve_of(rows, count, i, errors[kinds[k]].of);
         char *name = name_of(p, &rows[i], curves, panels);
-        draw_curve(to, name, &curves[panel]);
+        draw_curve(to, name, rows[i].integrator, &curves[panel]);
         free(name);
         for (size_t k = 0; k < panels; k++)
             free_curve(&curves[k]);
@@ -204,11 +229,19 @@ static void draw_panel(plot *to, const plan *p, const row rows[], size_t count,
 }
 
 static void add_note(plot *to, const plan *p, const row rows[], size_t count) {
-    bool adaptive = false;
+    bool adaptive = false, some = false;
     for (size_t i = 0; i < count; i++)
         adaptive |= rows[i].tolerance > 0;
+    for (size_t i = 0; i < count; i++) {
+        size_t steps = 0;
+        for (size_t k = 0; k < count; k++)
+            steps += is_same(&rows[i], &rows[k]);
+        some |= steps >= ORDER_STEPS;
+    }
     char *text = text_print(
-        "grey: the points that a slope is fitted to%s",
+        "%s%s",
+        some ? "grey: the points that a slope is fitted to, none above 0.1"
+             : "a slope needs five steps: --dt",
         adaptive ? "; schemes that choose their steps are left out" : "");
     plot_note_run(to, p, NULL, text);
     free(text);

@@ -6,6 +6,9 @@
 #include "experiment/row.h"
 #include "plot.h"
 
+/* Takes five steps where none are given, each half of the one before, and a run of 200 of
+   the longest, unless its end is given. */
+void order_plot_steps(const options *, plan *);
 /* Before the long work.
    steps    how many each scheme is to have
    returns  TOOL_OK, or TOOL_USAGE with the message printed */

@@ -118,6 +118,10 @@ void plot_limit_y(plot *p, double low, double high) {
     current(p)->limit_y = (range){low, high};
 }
 
+void plot_least_y(plot *p, double factor) {
+    current(p)->least_y = factor;
+}
+
 void plot_same_ranges(plot *p) {
     p->same_ranges = true;
 }
@@ -162,6 +166,21 @@ void plot_dash(plot *p, size_t number, size_t dash) {
 
 void plot_like(plot *p, size_t number, size_t other) {
     p->series[number].look = p->series[other].look;
+}
+
+void plot_integrator(plot *p, size_t number, const char *name) {
+    enum { COLOURS = 8 }; /* see looks.h: another of the same colour */
+    size_t look = plot_look_of_integrator(name);
+    series *own = &p->series[number];
+    for (bool taken = true; taken; look += taken ? COLOURS : 0) {
+        taken = false;
+        for (size_t i = 0; i < p->count && !taken; i++) {
+            const series *s = &p->series[i];
+            taken = i != number && s->look == look && own->name && s->name &&
+                    strcmp(own->name, s->name) != 0;
+        }
+    }
+    own->look = look;
 }
 
 static void add(series *s, pair point) {

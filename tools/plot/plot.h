@@ -48,6 +48,7 @@ void plot_equal(plot *);                           /* as long on x as on y */
 void plot_span_x(plot *, double low, double high); /* exactly this */
 void plot_span_y(plot *, double low, double high);
 void plot_limit_y(plot *, double low, double high); /* no more than this */
+void plot_least_y(plot *, double factor); /* of a logarithmic axis: no less */
 /* All panels show the same ranges. */
 void plot_same_ranges(plot *);
 /* The first panel is a map: values z[row*columns + column] at x[column], y[row],
@@ -55,9 +56,12 @@ void plot_same_ranges(plot *);
    they read in grey; hatched where they are NAN.  All are copied. */
 void plot_map(plot *, size_t columns, const double x[], size_t rows,
               const double y[], const double z[], const char *label);
-/* The colours of looks, in turn. */
-enum { PLOT_COLOURS = 7 };
-extern const char *const plot_colours[PLOT_COLOURS];
+/* The look of an integrator, the same in all pictures, and its colour. */
+size_t plot_look_of_integrator(const char *name);
+const char *plot_colour_of(size_t look);
+/* The series looks as this integrator does in all pictures; a second one of it in
+   the picture, such as with another step, has the same colour. */
+void plot_integrator(plot *, size_t series, const char *name);
 /* Looks differ in colour alone, of which there are as many as looks. */
 void plot_many_colours(plot *);
 /* So many panels side by side, small ones where they are many. */

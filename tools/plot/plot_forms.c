@@ -1,21 +1,20 @@
 /* nevh: plots: how series look, in one table that both writers read.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "looks.h"
 #include "plot_private.h"
 #include <math.h>
 #include <string.h>
 
-/* M. Okabe, K. Ito, Color Universal Design (2008), but for yellow, which is
-   lost on white; each with a dash and a marker of its own, for grey print. */
-const char *const plot_colours[PLOT_COLOURS] = {"#0072B2", "#D55E00", "#009E73",
-                                                "#CC79A7", "#000000", "#E69F00",
-                                                "#56B4E9"};
+static const char *const colours[] = {
+#define COLOUR(light, dark) light,
+    NEVH_COLOURS(COLOUR)};
 static const plot_dash_lengths dashes[] = {
     {0}, {12, 5}, {3, 3}, {14, 4, 3, 4}, {20, 6}};
 static const int markers[] = {
-    PLOT_DISC,        PLOT_SQUARE + 1, PLOT_TRIANGLE + 1,
-    PLOT_DIAMOND + 1, PLOT_SQUARE,     PLOT_CIRCLE,
-    PLOT_TRIANGLE,    PLOT_DIAMOND,    PLOT_CROSS};
+#define MARK(number, letter, python) number,
+    NEVH_MARKS(MARK)};
 enum {
+    COLOURS = sizeof colours / sizeof *colours,
     DASHES = sizeof dashes / sizeof *dashes,
     MARKERS = sizeof markers / sizeof *markers,
     MARKS = 9 /* of a PLOT_MARKED line */
@@ -53,11 +52,15 @@ static const struct {
     [PLOT_GUIDE] = {.colour = "#999999", .width = 1},
 };
 
+const char *plot_colour_of(size_t look) {
+    return colours[look % COLOURS];
+}
+
 /* Neighbours are far apart on the circle of hues, and differ in lightness. */
 void plot_colour(const plot *p, size_t look, char text[16]) {
     static const double golden = 0.6180339887498949;
     if (!p->colourful) {
-        snprintf(text, 16, "%s", plot_colours[look % PLOT_COLOURS]);
+        snprintf(text, 16, "%s", plot_colour_of(look));
         return;
     }
     double light = 0.45 + 0.15 * (double)(look % 3);

@@ -27,6 +27,7 @@ typedef struct {
     bool log_x, log_y, equal;
     range span_x, span_y; /* NAN: found */
     range limit_y;
+    double least_y; /* high over low, at least; 0: any */
 } panel;
 
 /* See plot_map. */

@@ -54,13 +54,16 @@ static double round_above(double value) {
     return digits[i] * power;
 }
 
-/* Finds the range of a logarithmic axis: round numbers, or, if they would be far
-   from a narrow range, an equal margin on either side, of a quarter at least. */
+/* Finds the range of a logarithmic axis: round numbers, so that no point lies on the
+   frame, or, if they would be far from a narrow range, an equal margin on either
+   side, of a quarter at least. */
 static range decades(range r) {
+    static const double margin = 1.15;
     if (r.low > r.high)
         return (range){0.1, 10};
     if (r.high >= 2 * r.low)
-        return (range){round_below(r.low), round_above(r.high)};
+        return (range){round_below(r.low / margin),
+                       round_above(r.high * margin)};
     double middle = sqrt(r.low) * sqrt(r.high);
     double half = sqrt(fmax(pow(r.high / r.low, 1 + 2 * room), 1.25));
     return (range){middle / half, middle * half};
@@ -93,6 +96,10 @@ range plot_range_y(const plot *p, size_t number) {
     if (r.low <= r.high) {
         r.low = fmin(fmax(r.low, on->limit_y.low), on->limit_y.high);
         r.high = fmax(fmin(r.high, on->limit_y.high), on->limit_y.low);
+    }
+    if (r.low > 0 && r.high < on->least_y * r.low) {
+        double middle = sqrt(r.low * r.high);
+        r = (range){middle / sqrt(on->least_y), middle * sqrt(on->least_y)};
     }
     return on->log_y ? decades(r) : with_room(r);
 }

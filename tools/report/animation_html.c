@@ -105,7 +105,7 @@ static void put_places_of(const animation *f, const recording *r, const view *v,
 /* The whole way faintly, the last steps more. */
 static void put_trail(const animation *f, const recording *r, const view *v,
                       size_t bob, FILE *to) {
-    const char *colour = plot_colours[bob % PLOT_COLOURS];
+    const char *colour = plot_colour_of(bob);
     size_t last = r->frames - 1;
     fprintf(to,
             "<path fill=\"none\" stroke=\"%s\" stroke-opacity=\".25\" "
@@ -134,9 +134,13 @@ static void put_orbit(const animation *f, const recording *r, const view *v,
                 down(v, at[3]));
     for (size_t i = 0; i < f->bobs; i++, at += 2)
         fprintf(to, "<circle r=\"%d\" fill=\"%s\" cx=\"%d\" cy=\"%d\"/>\n",
-                i < 4 ? 26 - 4 * (int)i : 12, plot_colours[i % PLOT_COLOURS],
+                i < 4 ? 26 - 4 * (int)i : 12, plot_colour_of(i),
                 across(v, at[0]), down(v, at[1]));
     fputs("</g>\n", to);
+}
+
+static const char *colour_of(const recording *r) {
+    return plot_colour_of(plot_look_of_integrator(r->integrator));
 }
 
 static void put_panel(const animation *f, size_t i, const view *v, FILE *to) {
@@ -147,7 +151,7 @@ static void put_panel(const animation *f, size_t i, const view *v, FILE *to) {
             "class=\"error\">%.2g %%</tspan></text>\n"
             "<svg x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" viewBox=\"0 0 "
             "%d %d\">\n<rect width=\"%d\" height=\"%d\" fill=\"#f4f4f4\"/>\n",
-            left, plot_colours[i], r->integrator, 100 * r->error[r->frames - 1],
+            left, colour_of(r), r->integrator, 100 * r->error[r->frames - 1],
             left, HEAD, PANEL, v->height, PANEL, v->height, PANEL, v->height);
     put_orbit(f, r, v, to);
     fputs("</svg>\n", to);
@@ -173,7 +177,7 @@ static void put_strip(const animation *f, int top, FILE *to) {
         fprintf(to,
                 "<polyline fill=\"none\" stroke=\"%s\" stroke-width=\"5\" "
                 "points=\"",
-                plot_colours[i]);
+                colour_of(&f->recording[i]));
         for (size_t k = 0; k < f->recording[i].frames; k++)
             fprintf(to, "%.0f,%.0f ", (double)(WIDTH * k) / (double)f->most,
                     (high - f->recording[i].error[k]) * scale);

@@ -51,6 +51,7 @@ static void draw_study(drawing *d, const study *l) {
     char *name = alone ? text_print("%s", l->integrator)
                        : text_print("%s, %s", l->integrator, l->gradient);
     size_t series = plot_series(d->to, name);
+    plot_integrator(d->to, series, l->integrator);
     plot_style(d->to, series, PLOT_BOTH);
     for (size_t k = 0; k < l->count; k++)
         if (is_drawn(d, l, k))
