@@ -76,7 +76,7 @@ int command_check(const command *c, const options *o) {
         return TOOL_OK;
     list kinds = {0};
     list_split_at(&kinds, option_find("plot-kind")->words, '|');
-    int status = check_plot_kind(c, kinds.item[o->plot.kind - PLOT_PHASE]);
+    int status = check_plot_kind(c, kinds.item[o->plot.kind - PLOT_KIND_phase]);
     list_free(&kinds);
     return status;
 }

@@ -390,7 +390,7 @@ exits 2 run henon-heiles --plot-kind configuration --plot $svg
 says 'no \[picture\]'
 test -s $work/out && fails "runs before it looks for a picture"
 exits 2 run pendulum --plot-kind portrait --plot $svg
-says 'phase, energy, configuration, time, order or animation'
+says 'phase, time, energy, configuration, animation or order'
 exits 2 run pendulum --plot - --format csv
 says 'with -o'
 

@@ -24,7 +24,6 @@
 #define SETTINGS               KIND("settings", read_settings, 0)
 #define CHOICE(type, member)   KIND("choice", read_choice, MEMBER(type, member))
 #define TAKEN(kind, reader)    KIND(kind, reader, 0)
-#define PLOT_WORD(id, name)    "|" name
 static_assert(sizeof(plot_kind) == sizeof(unsigned),
               "read_choice writes these");
 
@@ -139,10 +138,9 @@ const option_row option_rows[] = {
     {"plot", "FILE", FILE_NAME(plot.file), "PLOT",
      "draw FILE.svg; by gnuplot .png or .pdf, or - in the terminal"},
     {"plot-kind", "KIND", CHOICE(plot_kind, plot.kind), NULL,
-     "of run: phase (the default), time, energy, configuration or animation (a "
-     ".gif of that); of compare "
-     "and cost: order, errors against dt with slopes",
-     .first = PLOT_PHASE, .words = &(PLOT_KINDS(PLOT_WORD))[1]},
+     "of run" RUN_PLOTS(PLOT_HELP) "; of compare and cost: order, errors "
+                                   "against dt with slopes",
+     .first = PLOT_KIND_phase, .words = &(RUN_PLOTS(PLOT_WORD) "|order")[1]},
     {"columns", "A,B:C", TEXT("columns", columns), NULL,
      "of fit: the columns of the data to use; of run: what --plot-kind time or "
      "phase draws: a panel each, names joined by : in one; t, coordinates, "

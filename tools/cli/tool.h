@@ -182,18 +182,23 @@ extern const char scene_sample[];
 
 /* options.c: the command line. */
 typedef enum { MATCH_SCENE, MATCH_STEPS, MATCH_WORK } matching;
-/* The names of --plot-kind. */
-#define PLOT_KINDS(X)                                                          \
-    X(PHASE, "phase")                                                          \
-    X(ENERGY, "energy")                                                        \
-    X(CONFIGURATION, "configuration")                                          \
-    X(TIME, "time")                                                            \
-    X(ORDER, "order")                                                          \
-    X(ANIMATION, "animation")
-#define PLOT_KIND(id, name) PLOT_##id,
+/* The kinds of pictures of nevh run: the name, what it draws and its help.  The
+   function plot_NAME is in tools/orbit.
+   COLUMNS  those of --columns, and --data
+   PICTURE  the scene's [picture]
+   RUN      neither */
+#define RUN_PLOTS(X)                                                           \
+    X(phase, COLUMNS, ": phase (the default)")                                 \
+    X(time, COLUMNS, ", time")                                                 \
+    X(energy, RUN, ", energy")                                                 \
+    X(configuration, PICTURE, ", configuration")                               \
+    X(animation, PICTURE, ", animation (a .gif of that)")
+#define PLOT_KIND(name, draws, help) PLOT_KIND_##name,
+#define PLOT_WORD(name, draws, help) "|" #name
+#define PLOT_HELP(name, draws, help) help
 typedef enum {
-    PLOT_USUAL, /* the command's own */
-    PLOT_KINDS(PLOT_KIND)
+    PLOT_USUAL,                          /* the command's own */
+    RUN_PLOTS(PLOT_KIND) PLOT_KIND_order /* of compare and cost */
 } plot_kind;
 typedef struct {
     list operands, given;                  /* the names of the options given */

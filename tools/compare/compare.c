@@ -213,8 +213,9 @@ static page make_page(const options *o, const plan *p, const row_list *r) {
 }
 
 static int draw_rows(const options *o, const plan *p, const row_list *r) {
-    return o->plot.kind == PLOT_ORDER ? order_plot(o, p, r->row, r->count)
-                                      : compare_plot(o, p, r->row, r->count);
+    return o->plot.kind == PLOT_KIND_order
+               ? order_plot(o, p, r->row, r->count)
+               : compare_plot(o, p, r->row, r->count);
 }
 
 static int compare_rows(const options *o, plan *p, row_list *r) {

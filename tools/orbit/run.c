@@ -355,7 +355,7 @@ const command run_command = {
                 "run kepler --t-end 20 --plot kepler.svg",
     .options =
         "SCENE STEPS NATIVE TABLE PLOT tolerance every samples at resume data transform plot-kind columns",
-    .draws = "phase|energy|configuration|time|animation",
+    .draws = &(RUN_PLOTS(PLOT_WORD))[1],
     .columns = "t",
     .run = run_scene,
 };

@@ -189,7 +189,7 @@ static void draw_energy(plot *to, const run_picture *picture, const orbit *o) {
     free(m);
 }
 
-static plot *plot_energy(run_picture *picture) {
+plot *plot_energy(run_picture *picture) {
     plot *to = energy_plot_new(&picture->plan, picture->plan.title, NULL);
     for (size_t i = 0; i < picture->orbits.count; i++)
         draw_energy(to, picture, &picture->orbits.item[i]);
@@ -201,27 +201,21 @@ static plot *plot_energy(run_picture *picture) {
 
 /* Kinds. */
 
+enum { RUN, COLUMNS, PICTURE };
+#define PLOT_ROW(name, draws, help) [PLOT_KIND_##name] = {plot_##name, draws},
 static const struct {
     plot *(*draw)(run_picture *);
-    bool columns; /* draws those of --columns, and --data */
-    bool picture; /* draws the scene's [picture] */
-} kinds[] = {
-    [PLOT_USUAL] = {plot_phase, .columns = true},
-    [PLOT_PHASE] = {plot_phase, .columns = true},
-    [PLOT_TIME] = {plot_time, .columns = true},
-    [PLOT_CONFIGURATION] = {plot_configuration, .picture = true},
-    [PLOT_ANIMATION] = {plot_animation, .picture = true},
-    [PLOT_ENERGY] = {plot_energy},
-};
+    int draws;
+} kinds[] = {[PLOT_USUAL] = {plot_phase, COLUMNS}, RUN_PLOTS(PLOT_ROW)};
 
 static int check_kind(const options *o, const plan *p) {
-    bool columns = kinds[o->plot.kind].columns;
+    bool columns = kinds[o->plot.kind].draws == COLUMNS;
     if (o->fit.data && plot_wanted(o) && !columns)
         return tool_refuse("--data is drawn over --plot-kind time or phase");
     if (o->columns && !(plot_wanted(o) && columns))
         return tool_refuse("--columns is for --plot with --plot-kind time or "
                            "phase");
-    if (plot_wanted(o) && kinds[o->plot.kind].picture &&
+    if (plot_wanted(o) && kinds[o->plot.kind].draws == PICTURE &&
         nevh_scene_part_count(p->scene) == 0)
         return tool_refuse("%s: the scene has no [picture] to plot, as: bob = "
                            "x, y",

@@ -51,9 +51,7 @@ char *picture_cut(run_picture *, double turns, double wanted);
 void picture_note(const run_picture *, plot *, const char *more);
 
 /* Each makes a plot; NULL, with a message printed, where it cannot. */
-plot *plot_phase(run_picture *);         /* phase_plot.c */
-plot *plot_configuration(run_picture *); /* configuration_plot.c */
-plot *plot_animation(run_picture *);     /* the same */
-plot *plot_time(run_picture *);          /* time_plot.c */
+#define PLOT_FUNCTION(name, draws, help) plot *plot_##name(run_picture *);
+RUN_PLOTS(PLOT_FUNCTION)
 
 #endif

@@ -52,7 +52,7 @@ void order_plot_steps(const options *o, plan *p) {
 }
 
 int order_plot_check(const options *o, size_t steps) {
-    if (o->plot.kind == PLOT_ORDER && plot_wanted(o) && steps < 2)
+    if (o->plot.kind == PLOT_KIND_order && plot_wanted(o) && steps < 2)
         return tool_refuse("--plot-kind order needs two steps or more, as "
                            "--dt 0.1,0.05,0.02");
     return TOOL_OK;

@@ -22,7 +22,7 @@ static int find_medium(const options *o, medium *m) {
                  {"pdf", PLOT_PDF},
                  {"gif", PLOT_GIF}};
     const char *dot = o->plot.file ? strrchr(o->plot.file, '.') : NULL;
-    bool moves = o->plot.kind == PLOT_ANIMATION;
+    bool moves = o->plot.kind == PLOT_KIND_animation;
     bool gif = dot && strcmp(dot, ".gif") == 0;
     *m = o->plot.file ? PLOT_TEXT : PLOT_SCREEN;
     if (moves && !gif)

@@ -261,7 +261,7 @@ static int report_failures(const costs *c) {
 
 static int draw_costs(const options *o, const costs *c) {
     size_t count;
-    if (o->plot.kind != PLOT_ORDER)
+    if (o->plot.kind != PLOT_KIND_order)
         return cost_plot(o, c);
     row *rows = list_rows(c, true, &count);
     int status = order_plot(o, &c->search.plan, rows, count);
