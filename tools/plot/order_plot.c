@@ -36,7 +36,7 @@ typedef struct {
 
 void order_plot_steps(const options *o, plan *p) {
     static const double steps = 200; /* of the longest */
-    if (o->plot.kind != PLOT_ORDER || o->dt.count || !p->dts)
+    if (o->plot.kind != PLOT_KIND_order || o->dt.count || !p->dts)
         return;
     double longest = p->dt[0];
     for (size_t i = 1; i < p->dts; i++)
