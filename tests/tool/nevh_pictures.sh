@@ -59,11 +59,11 @@ for scene in pendulum henon-heiles damped-driven-pendulum; do
     draws 0 section $scene --t-end 200 --plot
 done
 for scene in kepler double-pendulum sun-earth-moon; do
-    draws 1 run $scene --plot-kind configuration --t-end 5 --plot
+    draws 2 run $scene --plot-kind configuration --t-end 5 --plot
 done
 # Long runs have no more bytes than a screen shows.
-draws 1 run pendulum --t-end 1000 --plot
-draws 1 run double-pendulum --plot-kind configuration --t-end 400 --plot
+draws 2 run pendulum --t-end 1000 --plot
+draws 2 run double-pendulum --plot-kind configuration --t-end 400 --plot
 draws 1 section henon-heiles --t-end 20000 --plot
 
 # The legend has what the commands were given, once; curves their names.
@@ -93,7 +93,7 @@ draws 1 sweep pendulum --vary 'phi = range(0.1, 3, 50)' --dt 0.05 --t-end 3 \
 printf '[scene]\ntitle = a\357\277\276 <b>&amp; ]]> "q"\n' >$work/odd.nevh
 printf '[coordinates]\nx = 1\n[effects]\nT = p_x^2/2\nV = x^2/2\n[run]\nt_end = 5\n' >>$work/odd.nevh
 printf 'dt = 0.1\nintegrators = verlet\n' >>$work/odd.nevh
-draws 1 run $work/odd.nevh --plot
+draws 2 run $work/odd.nevh --plot
 texts | grep -q 'a?* &lt;b&gt;&amp;amp; \]\]&gt; &quot;q&quot;$' ||
     { fails "has another title"; texts | head -n 1; }
 

@@ -250,16 +250,17 @@ draws run pendulum-rotating --t-end 50 --dt 0.05 --every 1 --plot $svg \
 test -s $work/out && fails "prints"
 shows 'phi (rad)'
 shows 'p_phi (J s)'
-shows 'verlet, dt = 0.05 s; gradient central4; t = 0 ... 50 s; H = 22.2 J at the start'
+shows 'verlet, dt = 0.05 s; gradient central4; t = 0 ... 50 s; circle: the start; H = 22.2 J at the start'
 grep -q '^set xrange \[-3.14159265359:3.14159265359\]' $work/out.gp ||
     fails "shows another range"
 rounds=$(awk -F, '/^[0-9]/ { t = int(($2 + 3.14159265) / 6.2831853)
     n += t != last; last = t } END { print n }' $work/rows.csv)
-breaks=$(awk '/^\$series1 <</ { on = 1 } /^EOD/ { on = 0 } on && NF == 0 { n++ }
+breaks=$(awk '/^\$series2 <</ { on = 1 } /^EOD/ { on = 0 } on && NF == 0 { n++ }
     END { print n }' $work/out.gp)
 test $rounds -gt 40 || fails "goes round $rounds times"
 test "$rounds" = "$breaks" || fails "wraps $breaks times, not $rounds"
-test "$(points 2)" = 1 || fails "does not show the start"
+test "$(points 3)" = 1 || fails "does not show the start"
+test "$(points 1)" -gt 5000 || fails "does not draw the reference"
 draws run kepler --t-end 5 --dt 0.05 --plot-kind energy --plot $svg
 shows '|energy error|, relative'
 test "$(cat $work/out)" = "$svg: verlet, dt = 0.05; -o FILE writes the rows as CSV" ||
@@ -276,7 +277,7 @@ for text in mode1 mode2 mode3 mode4; do shows "$text"; done
 draws run fput --t-end 5 --plot $svg
 texts | grep -q '; the first 4 of 32 coordinates: --columns chooses others$' ||
     fails "does not say what is left out"
-test "$(texts | grep -c '^p_x\[')" = 4 || fails "has other panels"
+test "$(texts | grep -c '^p_x\[')" = 8 || fails "has other panels"
 draws run fput --t-end 5 --plot $svg --columns 'x[7],x[1]:x[2]'
 for text in 'x[7]' 'p_x[7]' 'x[1]' 'x[2]'; do shows "$text"; done
 exits 2 run fput --t-end 5 --plot $svg --columns 'x[1]:x[2]:x[3]'
@@ -306,7 +307,7 @@ awk '/series[34] using/ { n += / with points linetype [12] / } END { exit n != 2
     $work/out.gp || fails "does not draw points"
 # A run of 375 swings is cut, and says so; unless its end is asked for.
 draws run pendulum --plot-kind time --plot $svg
-shows 'verlet, dt = 0.1 s; gradient central4; t = 0 ... 50 s; a part of the run: --t-end 1000 shows all'
+shows 'verlet, dt = 0.1 s; gradient central4; t = 0 ... 20 s; a part of the run: --t-end 1000 shows all'
 for text in 'phi (rad)' 'p_phi (J s)' 'energy (J)'; do shows "$text"; done
 draws run pendulum --plot-kind time --plot $svg --t-end 1000 --columns phi
 shows 'verlet, dt = 0.1 s; gradient central4; t = 0 ... 1000 s'
@@ -314,7 +315,7 @@ shows 'verlet, dt = 0.1 s; gradient central4; t = 0 ... 1000 s'
 draws run kepler-0.9 --plot $svg --keep-plot-script $work/out.gp
 texts | grep -q 't = 0 ... 50; .*a part of the run: --t-end 628.319 shows all' ||
     { fails "does not cut the run"; texts; }
-grep -q '^ *\$series1 using 1:2 with lines\|plot \$series1 using 1:2 with lines' $work/out.gp ||
+grep -q '^ *\$series2 using 1:2 with lines\|plot \$series2 using 1:2 with lines' $work/out.gp ||
     fails "draws dots"
 # What the scene shows, where there are many coordinates.
 draws run sun-earth-moon --plot-kind time --plot $svg --t-end 1 --without moon
@@ -350,9 +351,10 @@ draws run double-pendulum --t-end 5 --dt 0.02 --plot-kind configuration \
 for text in 'bob 1' 'bob 2' 'x (m)' 'y (m)'; do shows "$text"; done
 texts | grep -q 't = 0 ... 5 s; circles: the start; discs: t = 5 s$' ||
     fails "does not say when"
-test "$(points 1)" -gt 2000 || fails "does not draw the trail"
+test "$(points 1)" -gt 2000 || fails "does not draw the reference"
+test "$(points 8)" -gt 2000 || fails "does not draw the trail"
 # Circles about the pivot, chords of which do not show.
-awk '/^\$series1 <</ { on = 1; next } /^EOD/ { on = 0 }
+awk '/^\$series[18] <</ { on = 1; n = 0; next } /^EOD/ { on = 0 }
     on { r = $1 * $1 + $2 * $2; bad += r < 0.99999 || r > 1.00001
         d = ($1 - x) ^ 2 + ($2 - y) ^ 2; bad += n++ && d > 0.01; x = $1; y = $2 }
     END { exit bad > 0 }' $work/out.gp || fails "draws chords"
@@ -362,10 +364,10 @@ awk -F, '/^t,/ { for (i = 1; i <= NF; i++) if ($i == "x1") k = i }
     /^[0-9]/ { for (i = 0; i < 4; i++) last[i] = $(k + i) }
     END { printf("%.6f %.6f\n%.6f %.6f\n", last[0], last[1], last[2], last[3]) }
     ' $work/rows.csv >$work/rows
-awk '/^\$series[78] <</ { getline; printf("%.6f %.6f\n", $1, $2) }' \
+awk '/^\$series1[56] <</ { getline; printf("%.6f %.6f\n", $1, $2) }' \
     $work/out.gp >$work/drawn
 cmp $work/rows $work/drawn || fails "draws bobs elsewhere"
-awk '/^\$series[34] <</ { getline; print }' $work/out.gp >$work/drawn
+awk '/^\$series(10|11) <</ { getline; print }' $work/out.gp >$work/drawn
 printf '1 -6.12323399573677e-17\n1 -1\n' | cmp - $work/drawn ||
     { fails "draws starts elsewhere"; cat $work/drawn; }
 # Names of bobs, and axes by what places them.
@@ -386,6 +388,15 @@ awk '/^set [xy]range/ { gsub("[^0-9.e xyrange-]", " "); l[substr($2, 1, 1)] = $4
           y = l["y"] / (m["t"] - m["b"]) / size[2]
           exit !(x / y > 0.999 && x / y < 1.001) }' $work/out.gp ||
     fails "distorts the picture"
+# A panel for the reference and each scheme, which have the same range.
+draws run kepler --t-end 20 --integrators verlet,rk4 --plot-kind configuration \
+    --plot $svg --keep-plot-script $work/out.gp
+for text in 'exact solution' verlet rk4; do shows "$text"; done
+test "$(grep '^set [xy]range' $work/out.gp | sort | uniq -c | awk '{ print $1 }' | tr '\n' ' ')" = '3 3 ' ||
+    fails "has other ranges"
+draws run henon-heiles --t-end 20 --integrators verlet,rk4 --plot $svg
+for text in reference verlet rk4; do shows "$text"; done
+test "$(grep -c "stroke='#dddddd'" $svg)" = 6 || fails "has other panels"
 exits 2 run henon-heiles --plot-kind configuration --plot $svg
 says 'no \[picture\]'
 test -s $work/out && fails "runs before it looks for a picture"

@@ -84,9 +84,17 @@ static char *axis_label(const plan *p, const bob_list *b, size_t which) {
 
 /* Parts. */
 
-static size_t draw_trail(plot *to, const orbit *o, size_t bob) {
+/* A bob that is alone has the colour of the integrator. */
+static size_t draw_trail(plot *to, const orbit *o, size_t bob, bool alone) {
     size_t series = plot_series(to, NULL);
-    plot_style(to, series, o->rows.part < 1 ? PLOT_DOTS : PLOT_TRAIL);
+    plot_style(to, series,
+               !o->integrator     ? PLOT_REFERENCE
+               : o->rows.part < 1 ? PLOT_DOTS
+                                  : PLOT_TRAIL);
+    if (alone && o->integrator)
+        plot_integrator(to, series, o->integrator);
+    else if (!alone)
+        plot_set_look(to, series, bob);
     for (size_t i = 0; i < o->rows.count; i++) {
         const double *at = orbit_row(o, i) + 2 * bob;
         plot_point(to, series, at[0], at[1]);
@@ -109,14 +117,33 @@ static void draw_rod(plot *to, const double values[4]) {
     plot_point(to, series, values[2], values[3]);
 }
 
-/* Draws the rods at the end of the run. */
-static void draw_rods(plot *to, nevh_scene *s, const orbit *o) {
+/* True if a bob is there at the end of the run. */
+static bool is_bob(const bob_list *b, const orbit *o, const double at[2]) {
+    static const double rounding = 1e-9;
     double values[4];
-    for (size_t i = 0; i < nevh_scene_part_count(s); i++)
-        if (strcmp(nevh_scene_part_at(s, i).kind, "rod") == 0) {
-            part(s, i, o->t, o->q, o->p, values);
-            draw_rod(to, values);
-        }
+    for (size_t bob = 0; bob < b->count; bob++) {
+        part(b->scene, b->part[bob], o->t, o->q, o->p, values);
+        if (hypot(values[0] - at[0], values[1] - at[1]) < rounding)
+            return true;
+    }
+    return false;
+}
+
+/* Draws the rods at the end of the run, and their pivots. */
+static void draw_rods(plot *to, const bob_list *b, const orbit *o) {
+    double values[4];
+    for (size_t i = 0; i < nevh_scene_part_count(b->scene); i++) {
+        if (strcmp(nevh_scene_part_at(b->scene, i).kind, "rod") != 0)
+            continue;
+        part(b->scene, i, o->t, o->q, o->p, values);
+        draw_rod(to, values);
+        for (size_t end = 0; end < 4; end += 2)
+            if (!is_bob(b, o, values + end)) {
+                size_t series = plot_series(to, NULL);
+                plot_style(to, series, PLOT_CENTRE);
+                plot_point(to, series, values[end], values[end + 1]);
+            }
+    }
 }
 
 /* Smaller ones later, so that none is hidden. */
@@ -139,12 +166,12 @@ static void draw_bob(plot *to, const bob_list *b, size_t bob, const orbit *o,
 
 static void draw(plot *to, const bob_list *b, const orbit *o) {
     size_t trails[MOST_BOBS];
-    plot_equal(to);
     for (size_t bob = 0; bob < b->count; bob++)
-        trails[bob] = draw_trail(to, o, bob);
-    for (size_t bob = 0; bob < b->count && o->rows.count; bob++)
+        trails[bob] = draw_trail(to, o, bob, b->count == 1);
+    for (size_t bob = 0; bob < b->count && o->rows.count && o->integrator;
+         bob++)
         draw_start(to, o, bob, trails[bob]);
-    draw_rods(to, b->scene, o);
+    draw_rods(to, b, o);
     for (size_t bob = 0; bob < b->count; bob++)
         draw_bob(to, b, bob, o, trails[bob]);
 }
@@ -176,20 +203,58 @@ static char *follow(run_picture *picture, bob_list *b) {
     return words;
 }
 
+/* All panels show what rods reach, too. */
+static void set_window(plot *to, const run_picture *picture,
+                       const bob_list *b) {
+    size_t columns[2][MOST_BOBS];
+    for (size_t i = 0; i < b->count; i++) {
+        columns[0][i] = 2 * i;
+        columns[1][i] = 2 * i + 1;
+    }
+    picture_range window[2] = {picture_extent(picture, columns[0], b->count),
+                               picture_extent(picture, columns[1], b->count)};
+    const orbit *o = picture_orbit(picture, 0);
+    double values[4];
+    for (size_t i = 0; i < nevh_scene_part_count(b->scene); i++) {
+        if (strcmp(nevh_scene_part_at(b->scene, i).kind, "rod") != 0)
+            continue;
+        part(b->scene, i, o->t, o->q, o->p, values);
+        for (size_t k = 0; k < 4; k++) {
+            picture_range *w = &window[k % 2];
+            double more = 0.02 * (w->high - w->low);
+            w->low = fmin(w->low, values[k] - more);
+            w->high = fmax(w->high, values[k] + more);
+        }
+    }
+    plot_equal(to);
+    plot_span_x(to, window[0].low, window[0].high);
+    plot_span_y(to, window[1].low, window[1].high);
+}
+
 plot *plot_configuration(run_picture *picture) {
     bob_list b = bobs_of(picture->plan.scene);
     orbit *first = picture->orbits.item;
     const char *unit = nevh_scene_label(picture->plan.scene, "t");
-    if (picture->orbits.count > 1) {
-        tool_refuse("--plot-kind configuration draws one orbit: give one "
-                    "integrator and one dt");
-        return NULL;
-    }
+    plot *to = NULL;
     char *cut = follow(picture, &b);
+    picture_refer(picture, 2 * b.count, fill, &b);
     char *x = axis_label(&picture->plan, &b, 0),
          *y = axis_label(&picture->plan, &b, 1);
-    plot *to = plot_new(picture->plan.title, x, y);
-    draw(to, &b, first);
+    for (size_t i = 0; i < picture_columns(picture); i++) {
+        char *heading = picture_heading(picture, i);
+        if (to)
+            plot_panel(to, heading, x, y);
+        else
+            to = plot_new(picture->plan.title, x, y);
+        if (!i)
+            plot_heading(to, heading);
+        set_window(to, picture, &b);
+        draw(to, &b, picture_orbit(picture, i));
+        free(heading);
+    }
+    plot_columns(to, picture_columns(picture) > 4   ? 3
+                     : picture_columns(picture) > 3 ? 2
+                                                    : picture_columns(picture));
     char *more =
         text_print("circles: the start; discs: t = %.6g%s%s%s%s", first->t,
                    *unit ? " " : "", unit, *cut ? "; " : "", cut);

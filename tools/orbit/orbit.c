@@ -60,11 +60,14 @@ static void forget(orbit *o) {
     o->q = o->p = NULL;
 }
 
+void orbit_free(orbit *o) {
+    forget(o);
+    free(o->name);
+}
+
 void orbits_free(orbits *all) {
-    for (size_t i = 0; i < all->count; i++) {
-        forget(&all->item[i]);
-        free(all->item[i].name);
-    }
+    for (size_t i = 0; i < all->count; i++)
+        orbit_free(&all->item[i]);
     free(all->item);
     list_free(&all->left_out);
 }
@@ -106,6 +109,27 @@ int orbit_follow(orbit *o, const row_times *times, size_t columns,
     trajectory_free(r);
     nevh_stepper_free(s);
     return o->status;
+}
+
+size_t orbit_follow_reference(orbit *o, nevh_reference *r, size_t columns,
+                              orbit_fill *fill, void *data) {
+    enum { STATES = 8000 };
+    size_t n = o->plan.n;
+    filler f = {o, fill, data};
+    double *q = tool_allocate(2 * n, sizeof *q), *p = q + n;
+    double begin = o->plan.run->t_start, span = o->plan.t_end - begin;
+    forget(o);
+    o->rows = thinned_new(columns + 1);
+    o->q = tool_allocate(n, sizeof *o->q);
+    o->p = tool_allocate(n, sizeof *o->p);
+    for (size_t i = 0; i <= STATES; i++) {
+        double elapsed = span * (double)i / STATES;
+        if (nevh_reference_state_after(r, elapsed, q, p))
+            break;
+        take(&f, begin + elapsed, q, p);
+    }
+    free(q);
+    return o->rows.count;
 }
 
 row_times orbit_dense_times(const plan *p) {

@@ -25,6 +25,7 @@ typedef struct {
 } orbits;
 orbits orbits_new(const options *, const plan *, const char *integrator);
 void orbits_free(orbits *);
+void orbit_free(orbit *);
 
 /* Writes what is shown of a state. */
 typedef void orbit_fill(void *data, double t, const double q[],
@@ -34,6 +35,10 @@ typedef void orbit_fill(void *data, double t, const double q[],
    returns  as trajectory_follow */
 int orbit_follow(orbit *, const row_times *, size_t columns, orbit_fill *,
                  void *data, bool quiet);
+/* The same of a reference, evenly in time until the end of the plan or its horizon.
+   returns  how many states it has */
+size_t orbit_follow_reference(orbit *, nevh_reference *, size_t columns,
+                              orbit_fill *, void *data);
 /* At the steps, and between them where they are few, so that a curve looks like
    one. */
 row_times orbit_dense_times(const plan *);        /* time: to be freed */

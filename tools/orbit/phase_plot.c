@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_COORDINATES = 4, PHASE_TURNS = 50 };
+enum { MOST_COORDINATES = 4, PHASE_TURNS = 20 };
 
 /* x is x:p_x. */
 static char *pairs_of(const options *o, const plan *p) {
@@ -46,14 +46,8 @@ static int check_pairs(const column_panels *c) {
 static double wrapping(const run_picture *picture, const column_panels *c,
                        size_t k) {
     double period = plan_period(&picture->plan, c->columns.item[k].name);
-    double low = INFINITY, high = -INFINITY;
-    for (size_t i = 0; i < picture->orbits.count; i++)
-        for (size_t row = 0; row < picture->orbits.item[i].rows.count; row++) {
-            double q = orbit_row(&picture->orbits.item[i], row)[k];
-            low = fmin(low, q);
-            high = fmax(high, q);
-        }
-    return high - low > period ? period : 0;
+    picture_range e = picture_extent(picture, &k, 1);
+    return e.high - e.low > period ? period : 0;
 }
 
 /* A line leaves the panel at one side, and comes in at the other. */
@@ -68,13 +62,16 @@ static double shift_of(double q, double period) {
     return period > 0 ? period * floor(q / period + 0.5) : 0;
 }
 
-static void draw_orbit(plot *to, const orbit *o, size_t k, double period,
-                       const char *name) {
-    size_t series = plot_series(to, name);
+static void draw_orbit(plot *to, const orbit *o, size_t k, double period) {
+    size_t series = plot_series(to, NULL);
     bool whole = o->rows.part == 1;
     double last = 0;
-    plot_integrator(to, series, o->integrator);
-    plot_style(to, series, whole ? PLOT_TRAIL : PLOT_DOTS);
+    if (o->integrator)
+        plot_integrator(to, series, o->integrator);
+    plot_style(to, series,
+               !o->integrator ? PLOT_REFERENCE
+               : whole        ? PLOT_TRAIL
+                              : PLOT_DOTS);
     for (size_t i = 0; i < o->rows.count; i++) {
         const double *at = orbit_row(o, i) + k;
         double shift = shift_of(at[0], period);
@@ -83,7 +80,7 @@ static void draw_orbit(plot *to, const orbit *o, size_t k, double period,
         plot_point(to, series, at[0] - shift, at[1]);
         last = shift;
     }
-    if (!o->rows.count)
+    if (!o->rows.count || !o->integrator)
         return;
     const double *begin = orbit_row(o, 0) + k;
     size_t start = plot_series(to, NULL);
@@ -92,24 +89,34 @@ static void draw_orbit(plot *to, const orbit *o, size_t k, double period,
     plot_point(to, start, begin[0] - shift_of(begin[0], period), begin[1]);
 }
 
-static void draw_panel(plot **to, const run_picture *picture,
-                       const column_panels *c, size_t number) {
+/* A row of panels. */
+static void draw_panels(plot **to, const run_picture *picture,
+                        const column_panels *c, size_t number) {
     size_t k = 2 * number;
     char *x = column_label(&picture->plan, &c->columns.item[k]);
     char *y = column_label(&picture->plan, &c->columns.item[k + 1]);
     double period = wrapping(picture, c, k);
-    if (number)
-        plot_panel(*to, NULL, x, y);
-    else
-        *to = plot_new(picture->plan.title, x, y);
-    if (period > 0)
-        plot_span_x(*to, -period / 2, period / 2);
-    for (size_t i = 0; i < picture->orbits.count; i++)
-        draw_orbit(*to, &picture->orbits.item[i], k, period,
-                   picture->orbits.count > 1 ? picture->orbits.item[i].name
-                                             : NULL);
-    picture_measured(picture, *to, "measured", c->columns.item[k].name,
-                     c->columns.item[k + 1].name, period);
+    size_t y_column = k + 1;
+    picture_range across = picture_extent(picture, &k, 1);
+    picture_range up = picture_extent(picture, &y_column, 1);
+    for (size_t i = 0; i < picture_columns(picture); i++) {
+        char *heading = number ? NULL : picture_heading(picture, i);
+        if (*to)
+            plot_panel(*to, heading, x, y);
+        else
+            *to = plot_new(picture->plan.title, x, y);
+        if (number + i == 0)
+            plot_heading(*to, heading);
+        if (period > 0)
+            plot_span_x(*to, -period / 2, period / 2);
+        else
+            plot_span_x(*to, across.low, across.high);
+        plot_span_y(*to, up.low, up.high);
+        draw_orbit(*to, picture_orbit(picture, i), k, period);
+        picture_measured(picture, *to, "measured", c->columns.item[k].name,
+                         c->columns.item[k + 1].name, period);
+        free(heading);
+    }
     free(x);
     free(y);
 }
@@ -138,11 +145,19 @@ static char *note_text(const run_picture *picture, const char *cut) {
                             "chooses others",
                             MOST_COORDINATES, p->n);
     }
-    char *text =
-        text_print("%s%s%s%s", energy, others, cut ? "; " : "", cut ? cut : "");
+    char *text = text_print("circle: the start; %s%s%s%s", energy, others,
+                            cut ? "; " : "", cut ? cut : "");
     free(others);
     free(energy);
     return text;
+}
+
+/* True if a column is known of schemes alone. */
+static bool has_shadow(const quantities *c) {
+    bool any = false;
+    for (size_t k = 0; k < c->count; k++)
+        any |= c->item[k].kind == COLUMN_SHADOW_ERROR;
+    return any;
 }
 
 static void follow(run_picture *picture, column_panels *c) {
@@ -161,7 +176,7 @@ static double least_turns(const orbit *o, size_t panels) {
     return isfinite(least) ? least : 0;
 }
 
-/* Some fifty turns, or fewer of which all steps are kept, so that they are lines
+/* Some twenty turns, or fewer of which all steps are kept, so that they are lines
    and not dots. */
 static double turns_wanted(const orbit *o, double turns) {
     static const double fewest = 5;
@@ -194,8 +209,11 @@ plot *plot_phase(run_picture *picture) {
     if (!column_panels_read(&c, &picture->plan, names) && !check_pairs(&c) &&
         !check_measured(picture, &c) && !column_panels_check(picture, &c)) {
         char *cut = follow_and_cut(picture, &c);
+        if (!has_shadow(&c.columns))
+            column_panels_refer(picture, &c);
         for (size_t i = 0; i < c.panels; i++)
-            draw_panel(&to, picture, &c, i);
+            draw_panels(&to, picture, &c, i);
+        plot_columns(to, picture_columns(picture));
         char *more = note_text(picture, cut);
         picture_note(picture, to, more);
         free(more);

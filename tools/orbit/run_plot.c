@@ -75,6 +75,73 @@ int column_panels_follow(run_picture *picture, const row_times *times,
     return worst;
 }
 
+bool picture_refer(run_picture *picture, size_t columns, orbit_fill *fill,
+                   void *data) {
+    plan *p = &picture->plan;
+    if (plan_reference(p, p->t_end) || !p->reference)
+        return false;
+    orbit *o = &picture->reference;
+    o->plan = *p;
+    o->name = text_print(
+        "%s", strncmp(nevh_reference_text(p->reference), "exact", 5) == 0
+                  ? "exact solution"
+                  : "reference");
+    return orbit_follow_reference(o, p->reference, columns, fill, data) > 1;
+}
+
+bool column_panels_refer(run_picture *picture, column_panels *c) {
+    return picture_refer(picture, c->columns.count, fill_columns, c);
+}
+
+size_t picture_columns(const run_picture *picture) {
+    return picture->orbits.count + (picture->reference.rows.count > 1);
+}
+
+const orbit *picture_orbit(const run_picture *picture, size_t column) {
+    bool refers = picture->reference.rows.count > 1;
+    return refers && column == 0 ? &picture->reference
+                                 : &picture->orbits.item[column - refers];
+}
+
+char *picture_heading(const run_picture *picture, size_t column) {
+    static const double rounding = 1e-9;
+    const orbit *o = picture_orbit(picture, column);
+    const char *name =
+        o->integrator && picture->orbits.count == 1 ? o->integrator : o->name;
+    double end = picture->plan.t_end;
+    if (o->status || o->t < end - rounding * fabs(end))
+        return text_print("%s, %s t = %.4g", name,
+                          o->integrator ? "ended at" : "until", o->t);
+    return text_print("%s", name);
+}
+
+static void widen(picture_range *e, const orbit *o, const size_t columns[],
+                  size_t count) {
+    for (size_t i = 0; i < o->rows.count; i++)
+        for (size_t k = 0; k < count; k++) {
+            double value = orbit_row(o, i)[columns[k]];
+            if (isfinite(value)) {
+                e->low = fmin(e->low, value);
+                e->high = fmax(e->high, value);
+            }
+        }
+}
+
+picture_range picture_extent(const run_picture *picture, const size_t columns[],
+                             size_t count) {
+    static const double room = 0.04;
+    picture_range first = {INFINITY, -INFINITY}, all;
+    widen(&first, picture_orbit(picture, 0), columns, count);
+    all = first;
+    for (size_t i = 1; i < picture_columns(picture); i++)
+        widen(&all, picture_orbit(picture, i), columns, count);
+    double far = (first.high - first.low) / 2;
+    all.low = fmax(all.low, first.low - far);
+    all.high = fmin(all.high, first.high + far);
+    double more = all.high > all.low ? room * (all.high - all.low) : 1;
+    return (picture_range){all.low - more, all.high + more};
+}
+
 int column_panels_check(const run_picture *picture, column_panels *c) {
     for (size_t i = 0; i < picture->orbits.count; i++) {
         const orbit *o = &picture->orbits.item[i];
@@ -270,6 +337,7 @@ int run_plot(const options *o, const plan *p, const char *integrator,
     if (picture.plan.no_reference != p->no_reference)
         free(picture.plan.no_reference);
     orbits_free(&picture.orbits);
+    orbit_free(&picture.reference);
     measured_free(&picture.data);
     return status;
 }

@@ -12,6 +12,8 @@ typedef struct {
     const options *options;
     plan plan; /* a copy, which may end earlier */
     orbits orbits;
+    orbit
+        reference; /* without an integrator; without rows where there is none */
     const row_times *rows; /* asked for by options; NULL: by the picture */
     measured data;         /* of no points where there are none */
     bool quiet;            /* failures are not printed */
@@ -44,11 +46,30 @@ int column_panels_check(const run_picture *, column_panels *);
 /* Ends a run that goes round often after about so many turns, unless its length
    was asked for; it is to be followed again then.
    returns  what is to be said of it, to be freed; NULL: it stays */
-enum { PICTURE_TURNS = 25 };
+enum { PICTURE_TURNS = 12 };
 char *picture_cut(run_picture *, double turns, double wanted);
 /* Title, and the note with what is said of orbits, and more; a plot is made
    with the labels. */
 void picture_note(const run_picture *, plot *, const char *more);
+
+/* Finds the orbit of the reference, to which all are compared: exact, by Taylor series
+   or by a finer run, until the end of the picture.
+   returns  false where there is none */
+bool picture_refer(run_picture *, size_t columns, orbit_fill *, void *data);
+bool column_panels_refer(run_picture *, column_panels *);
+/* A panel each: the reference first, if there is one. */
+size_t picture_columns(const run_picture *);
+const orbit *picture_orbit(const run_picture *, size_t column);
+/* "exact solution", "verlet, ended at t = 3"; to be freed. */
+char *picture_heading(const run_picture *, size_t column);
+
+/* The range of these columns: that of the reference, or else of the first orbit, and of
+   the others as far as they do not leave it by far; with a margin. */
+typedef struct {
+    double low, high;
+} picture_range;
+picture_range picture_extent(const run_picture *, const size_t columns[],
+                             size_t count);
 
 /* Each makes a plot; NULL, with a message printed, where it cannot. */
 #define PLOT_FUNCTION(name, draws, help) plot *plot_##name(run_picture *);

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_PANELS = 9, FEW_ROWS = 80, EXACT_POINTS = 2000 };
+enum { MOST_PANELS = 9, FEW_ROWS = 80 };
 
 static void add_name(char **text, const char *prefix, const char *name) {
     char *longer =
@@ -75,35 +75,11 @@ static char *follow_and_cut(run_picture *picture, column_panels *c) {
     return words ? words : text_print("%s", "");
 }
 
-/* The exact solution, where there is one. */
-
-static bool may_be_known(const plan *p) {
-    return p->n <= 3 && !p->balance && !p->run->reference;
-}
-
-static nevh_reference *exact_solution(run_picture *picture) {
-    plan *p = &picture->plan;
-    if (!may_be_known(p) || plan_reference(p, p->t_end) || !p->reference ||
-        strncmp(nevh_reference_text(p->reference), "exact", 5) != 0)
-        return NULL;
-    return p->reference;
-}
-
-static void draw_exact(plot *to, const run_picture *picture, column_panels *c,
-                       size_t k, nevh_reference *exact) {
-    const plan *p = &picture->plan;
-    size_t n = p->n, series = plot_series(to, "exact solution");
-    double *state = tool_allocate(2 * n + c->columns.count, sizeof *state);
-    double *values = state + 2 * n, begin = p->run->t_start;
+static void draw_reference(plot *to, const orbit *o, size_t k) {
+    size_t series = plot_series(to, o->name);
     plot_style(to, series, PLOT_BEHIND);
-    for (size_t i = 0; i <= EXACT_POINTS; i++) {
-        double t = begin + (p->t_end - begin) * (double)i / EXACT_POINTS;
-        if (nevh_reference_state(exact, t, state, state + n))
-            continue;
-        columns_values(&c->columns, t, state, state + n, values);
-        plot_point(to, series, t, values[k]);
-    }
-    free(state);
+    for (size_t i = 0; i < o->rows.count; i++)
+        plot_point(to, series, orbit_row(o, i)[-1], orbit_row(o, i)[k]);
 }
 
 /* Which of the columns of its panel it is, and of how many. */
@@ -194,7 +170,7 @@ static char *panel_label(const run_picture *picture, const column_panels *c,
 }
 
 static void draw_panel(plot **to, run_picture *picture, column_panels *c,
-                       size_t panel, nevh_reference *exact) {
+                       size_t panel, bool exact) {
     char *x = plot_label(&picture->plan, "t", "t");
     char *y = panel_label(picture, c, panel);
     if (panel)
@@ -205,7 +181,7 @@ static void draw_panel(plot **to, run_picture *picture, column_panels *c,
     for (size_t k = 0; k < c->columns.count && exact; k++)
         if (c->panel[k] == panel &&
             c->columns.item[k].kind != COLUMN_SHADOW_ERROR)
-            draw_exact(*to, picture, c, k, exact);
+            draw_reference(*to, &picture->reference, k);
     for (size_t k = 0; k < c->columns.count; k++)
         for (size_t i = 0; i < picture->orbits.count && c->panel[k] == panel;
              i++)
@@ -240,7 +216,7 @@ plot *plot_time(run_picture *picture) {
         status = column_panels_check(picture, &c);
     if (!status) {
         char *more = follow_and_cut(picture, &c);
-        nevh_reference *exact = exact_solution(picture);
+        bool exact = column_panels_refer(picture, &c);
         for (size_t i = 0; i < c.panels; i++)
             draw_panel(&to, picture, &c, i, exact);
         plot_stack(to);

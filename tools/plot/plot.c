@@ -134,10 +134,10 @@ static size_t find_look(const plot *p, const char *name) {
         const series *s = &p->series[i];
         if (name && s->name && strcmp(name, s->name) == 0)
             return s->look;
-        bool grey = s->form == PLOT_BEHIND || s->form == PLOT_RODS ||
-                    s->form == PLOT_GUIDE || s->form == PLOT_LEVEL ||
-                    s->form == PLOT_SEPARATRIX || s->form == PLOT_CENTRE ||
-                    s->form == PLOT_SADDLE;
+        bool grey = s->form == PLOT_BEHIND || s->form == PLOT_REFERENCE ||
+                    s->form == PLOT_RODS || s->form == PLOT_GUIDE ||
+                    s->form == PLOT_LEVEL || s->form == PLOT_SEPARATRIX ||
+                    s->form == PLOT_CENTRE || s->form == PLOT_SADDLE;
         if (!grey && (name || s->panel == p->panels - 1) && look <= s->look)
             look = s->look + 1;
     }
@@ -166,6 +166,10 @@ void plot_dash(plot *p, size_t number, size_t dash) {
 
 void plot_like(plot *p, size_t number, size_t other) {
     p->series[number].look = p->series[other].look;
+}
+
+void plot_set_look(plot *p, size_t number, size_t look) {
+    p->series[number].look = look;
 }
 
 void plot_integrator(plot *p, size_t number, const char *name) {

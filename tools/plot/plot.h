@@ -14,6 +14,7 @@ typedef enum {
     PLOT_LINES,
     PLOT_TRAIL,      /* lines that are never dashed */
     PLOT_BEHIND,     /* a thick pale line */
+    PLOT_REFERENCE,  /* a grey line */
     PLOT_MARKED,     /* lines with a marker here and there */
     PLOT_BOTH,       /* lines with a marker at each point */
     PLOT_POINTS,     /* markers */
@@ -61,6 +62,7 @@ size_t plot_look_of_integrator(const char *name);
 const char *plot_colour_of(size_t look);
 /* The series looks as this integrator does in all pictures; a second one of it in
    the picture, such as with another step, has the same colour. */
+void plot_set_look(plot *, size_t series, size_t look);
 void plot_integrator(plot *, size_t series, const char *name);
 /* Looks differ in colour alone, of which there are as many as looks. */
 void plot_many_colours(plot *);

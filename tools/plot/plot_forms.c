@@ -33,6 +33,7 @@ static const struct {
     [PLOT_LINES] = {.width = 1.5, .dash = OF_LOOK},
     [PLOT_TRAIL] = {.width = 1.5, .dash = AS_ASKED},
     [PLOT_BEHIND] = {.colour = "#bbbbbb", .width = 5},
+    [PLOT_REFERENCE] = {.colour = "#777777", .width = 1.5},
     [PLOT_MARKED] = {.width = 1.5, .dash = OF_LOOK, .mark = OWN},
     [PLOT_BOTH] = {.width = 1.5, .dash = OF_LOOK, .mark = OWN},
     [PLOT_POINTS] = {.mark = OWN},

@@ -117,6 +117,8 @@ static void choose_panels(layout *l, const plot *p, const target *t) {
         l->columns = p->beside < p->panels ? p->beside : p->panels;
         l->panel_width = fmax(fmin(1200 / (double)l->columns, 400), 200);
         l->panel_height = 0.8 * l->panel_width;
+        if (p->panel->equal)
+            shape_panel(l, p, l->panel_width);
     }
     if (t->narrow) {
         double height = l->panel_height / l->panel_width;
@@ -219,7 +221,7 @@ layout plot_lay_out(const plot *p, const target *t) {
     l.top += l.narrow ? 1.3 * l.line : 0;
     l.bottom = (text ? 3 : 3.7) * l.line;
     if (p->stacked && !text)
-        l.bottom = 2.2 * l.line;
+        l.bottom = 1.2 * l.line; /* numbers are below the last one */
     choose_panels(&l, p, t);
     l.left = room_beside(p, &l, t);
     if (text || t->narrow)
@@ -237,7 +239,7 @@ layout plot_lay_out(const plot *p, const target *t) {
     l.title = room_above(p, &l);
     l.height = (l.top + l.panel_height + l.bottom) * (double)l.rows + l.title;
     if (p->stacked && !text)
-        l.height += 1.5 * l.line;
+        l.height += 2.5 * l.line;
     if (l.narrow)
         l.height += l.legend_height = lines ? legend : 0;
     else

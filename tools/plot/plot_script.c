@@ -75,15 +75,16 @@ static void print_map(FILE *f, const field_map *m, const layout *l) {
     plot_map_values(m, f);
 }
 
-static void print_axis(FILE *f, char letter, const axis *a) {
+static void print_axis(FILE *f, char letter, const axis *a, bool numbers) {
     fprintf(f, "%s logscale %c\nset %crange [%.12g:%.12g]\n",
             a->log ? "set" : "unset", letter, letter, a->shown.low,
             a->shown.high);
     fprintf(f, a->count ? "set %ctics nomirror out (" : "unset %ctics\n",
             letter);
     for (size_t i = 0; i < a->count; i++)
-        fprintf(f, "%s\"%s\" %.12g%s", i ? ", " : "", a->tick[i].text,
-                a->tick[i].at, a->tick[i].minor ? " 1" : "");
+        fprintf(f, "%s\"%s\" %.12g%s", i ? ", " : "",
+                numbers ? a->tick[i].text : "", a->tick[i].at,
+                a->tick[i].minor ? " 1" : "");
     fputs(a->count ? ")\n" : "", f);
 }
 
@@ -122,10 +123,11 @@ static void print_texts(FILE *f, const panel *on, const axes *a,
 static void print_axes(FILE *f, const plot *p, size_t number, const layout *l,
                        bool text) {
     axes a = plot_axes(p, number, l, text);
-    print_axis(f, 'x', &a.x);
-    print_axis(f, 'y', &a.y);
     panel on = p->panel[number];
-    if (p->stacked && number + 1 < p->panels)
+    bool above = p->stacked && number + 1 < p->panels;
+    print_axis(f, 'x', &a.x, text || !above);
+    print_axis(f, 'y', &a.y, true);
+    if (above)
         on.x = NULL;
     print_texts(f, &on, &a, l, text);
 }

@@ -105,7 +105,7 @@ static pair tick_at(const axis *a, const place *on, size_t i) {
                   on->from.y + share * on->along.y};
 }
 
-static void put_axis(FILE *f, const axis *a, const place *on) {
+static void put_axis(FILE *f, const axis *a, const place *on, bool numbers) {
     enum { TICK = 10 };
     fprintf(f, "<path fill='none' stroke='#555555' d='M%.1f %.1fl%g %g",
             on->from.x, on->from.y, on->along.x, on->along.y);
@@ -116,7 +116,7 @@ static void put_axis(FILE *f, const axis *a, const place *on) {
                 length * on->out.y);
     }
     fputs("'/>\n", f);
-    for (size_t i = 0; i < a->count; i++) {
+    for (size_t i = 0; i < a->count && numbers; i++) {
         pair at = tick_at(a, on, i);
         if (a->tick[i].minor)
             continue;
@@ -136,6 +136,8 @@ static void put_grid(FILE *f, const axis *a, const place *on, double right,
     }
 }
 
+static const double edge = 15; /* of a column of panels, to its labels */
+
 /* The middle of a label beside numbers of that axis. */
 static double beside(const axis *a) {
     return 9 * (double)plot_axis_letters(a) + 37;
@@ -151,7 +153,7 @@ static void put_labels(FILE *f, const panel *on, const axes *a, pair at,
     if (l->narrow)
         put_label(f, l->letter, at.y - 17, START, l->width - 2 * l->letter, y);
     else
-        put_standing(f, at.x - beside(&a->y), at.y + l->panel_height / 2,
+        put_standing(f, at.x - l->left + edge, at.y + l->panel_height / 2,
                      l->panel_height + l->top + 0.8 * l->bottom, y);
     put_label(f, middle, at.y - (l->narrow ? 35 : 16.5), MIDDLE, width,
               on->heading);
@@ -211,8 +213,8 @@ static void put_panel(FILE *f, const plot *p, size_t number, const layout *l,
     if (number == 0 && p->map.columns)
         plot_svg_map(f, &p->map, &on, at);
     put_curves(f, p, number, &on, at);
-    put_axis(f, &a.x, &x);
-    put_axis(f, &a.y, &y);
+    put_axis(f, &a.x, &x, last || !p->stacked);
+    put_axis(f, &a.y, &y, true);
     put_labels(f, &p->panel[number], &a, at, last || !p->stacked, l);
     put_guides(f, p, number, at, l);
 }
@@ -227,7 +229,8 @@ static void put_scale(FILE *f, const field_map *m, const layout *l) {
     put_axis(
         f, &a,
         &(place){
-            {right, at.y + height}, {0, -height}, {1, 0}, {20, base}, START});
+            {right, at.y + height}, {0, -height}, {1, 0}, {20, base}, START},
+        true);
     put_standing(f, right + beside(&a), at.y + height / 2, height, label);
     free(label);
 }
