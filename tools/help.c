@@ -51,12 +51,9 @@ static void print_all(FILE *f) {
     print_options(f, NULL);
     char *text = text_print("SCENE is a file, or a name of nevh list scenes.  "
                             "Exit status:");
-    for (int i = 0; i < STATUSES; i++) {
-        char *more = text_print("%s %d %s%s", text, statuses[i].status,
-                                statuses[i].when, i + 1 < STATUSES ? ";" : ".");
-        free(text);
-        text = more;
-    }
+    for (int i = 0; i < STATUSES; i++)
+        text_extend(&text, " %d %s%s", statuses[i].status, statuses[i].when,
+                    i + 1 < STATUSES ? ";" : ".");
     fputc('\n', f);
     help_print(f, 0, 0, text);
     free(text);

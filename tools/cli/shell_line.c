@@ -4,13 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Appends bytes, and frees the text. */
-static char *longer(char *text, const char *from, size_t bytes) {
-    char *result = text_print("%s%.*s", text, (int)bytes, from);
-    free(text);
-    return result;
-}
-
 /* In single quotes, where a quote itself is '\''. */
 static char *quoted(const char *word) {
     static const char special[] = " \t\n()*[]{}?<>|&;$\\\"'`!#~";
@@ -19,25 +12,24 @@ static char *quoted(const char *word) {
     char *text = text_print("'");
     while (*word) {
         size_t bytes = strcspn(word, "'");
-        text = longer(text, word, bytes);
-        word += bytes;
-        if (*word)
-            text = longer(text, "'\\''", 4), word++;
+        text_extend(&text, "%.*s%s", (int)bytes, word,
+                    word[bytes] ? "'\\''" : "");
+        word += bytes + (word[bytes] != '\0');
     }
-    return longer(text, "'", 1);
+    text_extend(&text, "'");
+    return text;
 }
 
 char *shell_word(char *line, const char *word) {
-    char *quotes = quoted(word), *result = text_print("%s %s", line, quotes);
+    char *quotes = quoted(word);
+    text_extend(&line, " %s", quotes);
     free(quotes);
-    free(line);
-    return result;
+    return line;
 }
 
 char *shell_option(char *line, const char *name, const char *value) {
-    char *option = text_print("%s --%s", line, name);
-    free(line);
-    return shell_word(option, value);
+    text_extend(&line, " --%s", name);
+    return shell_word(line, value);
 }
 
 char *shell_number(char *line, const char *name, double value) {

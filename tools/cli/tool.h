@@ -120,6 +120,9 @@ double tool_number(double);
 #define nevh_system_from(...)                                                  \
     ((nevh_system *)tool_owned(nevh_system_from(__VA_ARGS__)))
 __attribute__((format(printf, 1, 2))) char *text_print(const char *format, ...);
+/* Appends to a text; NULL: an empty one. */
+__attribute__((format(printf, 2, 3))) void text_extend(char **text,
+                                                       const char *format, ...);
 /* The item that `name` may have been meant for; NULL when none is close. */
 const char *list_closest(const list *, const char *name);
 /* Words of a help text between columns, in lines of 80 characters: the first

@@ -55,6 +55,17 @@ char *text_print(const char *format, ...) {
     return text;
 }
 
+void text_extend(char **text, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    char *more = print(format, arguments);
+    va_end(arguments);
+    char *longer = text_print("%s%s", *text ? *text : "", more);
+    free(*text);
+    free(more);
+    *text = longer;
+}
+
 static void take(list *l, char *text) {
     l->item = tool_enlarge(l->item, l->count + 1, sizeof *l->item);
     l->item[l->count++] = text;
@@ -109,13 +120,11 @@ char *list_joined(const list *l) {
 
 char *list_sentence(const list *l, const char *last) {
     char *text = text_print("%s", l->count ? l->item[0] : "");
-    for (size_t i = 1; i < l->count; i++) {
-        char *longer = i + 1 < l->count
-                           ? text_print("%s, %s", text, l->item[i])
-                           : text_print("%s %s %s", text, last, l->item[i]);
-        free(text);
-        text = longer;
-    }
+    for (size_t i = 1; i < l->count; i++)
+        if (i + 1 < l->count)
+            text_extend(&text, ", %s", l->item[i]);
+        else
+            text_extend(&text, " %s %s", last, l->item[i]);
     return text;
 }
 

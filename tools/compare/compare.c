@@ -122,8 +122,7 @@ static void show_row(table *t, const plan *p, const row *r) {
 
 static table *shown(const plan *p, const row_list *r) {
     table *t = table_new();
-    const char *unit = nevh_scene_label(p->scene, "t");
-    char *dt = text_print(*unit ? "dt/%s" : "dt%s", unit);
+    char *dt = text_print("dt%s", p->per_unit);
     table_column(t, "integrator");
     table_key(t);
     table_titles(t, "order,sympl.");

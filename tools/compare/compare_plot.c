@@ -14,15 +14,11 @@ static bool begins(const row rows[], size_t i) {
 }
 
 static char *heading(const plan *p, const row *r) {
-    const char *unit = nevh_scene_label(p->scene, "t");
-    char *dt = r->tolerance > 0
-                   ? text_print("steps by tolerance")
-                   : text_print("dt = %.4g%s%s", r->dt, *unit ? " " : "", unit);
-    if (p->gradients.count < 2)
-        return dt;
-    char *both = text_print("%s, %s", dt, r->gradient);
-    free(dt);
-    return both;
+    char *dt = r->tolerance > 0 ? text_print("steps by tolerance")
+                                : text_print("dt = %.4g%s", r->dt, p->unit);
+    if (p->gradients.count > 1)
+        text_extend(&dt, ", %s", r->gradient);
+    return dt;
 }
 
 static void begin_panel(plot **to, const plan *p, const row *r) {

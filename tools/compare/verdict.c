@@ -86,18 +86,10 @@ static const row *bounded_beside(const row rows[], size_t count,
     return NULL;
 }
 
-char *verdict_unit(const plan *p, const char *before) {
-    const char *unit = nevh_scene_label(p->scene, "t");
-    return text_print("%s%s", *unit ? before : "", unit);
-}
-
 /* The step or the tolerance of a row, in words. */
 static char *step_of(const plan *p, const row *r) {
-    char *unit = verdict_unit(p, " ");
-    char *text = r->tolerance > 0 ? text_print("tolerance = %.4g", r->tolerance)
-                                  : text_print("dt = %.4g%s", r->dt, unit);
-    free(unit);
-    return text;
+    return r->tolerance > 0 ? text_print("tolerance = %.4g", r->tolerance)
+                            : text_print("dt = %.4g%s", r->dt, p->unit);
 }
 
 char *verdict_subject(const plan *p, const row rows[], size_t count,
@@ -118,7 +110,6 @@ static void crossing_words(const plan *p, const row *r, const row *b,
     double span = r->t_end - p->run->t_start;
     double passes = b ? b->energy.max / fabs(r->energy.drift) : 0;
     double t = p->run->t_start + passes;
-    char *unit = verdict_unit(p, " ");
     if (!b)
         list_print(words, "%s.", text);
     else if (passes < fabs(r->step) && r->energy.straightness < straight)
@@ -129,16 +120,15 @@ static void crossing_words(const plan *p, const row *r, const row *b,
                    text, b->integrator, b->energy.max);
     else if (passes < span)
         list_print(words, "%s; it passed %s's %.1e near t = %.4g%s.", text,
-                   b->integrator, b->energy.max, t, unit);
+                   b->integrator, b->energy.max, t, p->unit);
     else if (passes < long_after * span)
         list_print(words,
                    "%s; still below %s's %.1e, which it would pass near t = "
                    "%.4g%s.",
-                   text, b->integrator, b->energy.max, t, unit);
+                   text, b->integrator, b->energy.max, t, p->unit);
     else
         list_print(words, "%s; that is far below %s's %.1e.", text,
                    b->integrator, b->energy.max);
-    free(unit);
 }
 
 /* True if the line accounts for most of the error; else the loss was made at once. */
@@ -156,11 +146,8 @@ static char *drift_of(const nevh_energy_report *e) {
 }
 
 static char *slope_of(const plan *p, const nevh_energy_report *e) {
-    char *per = verdict_unit(p, "/");
-    char *text = text_print("slope (%.3g +- %.1g)%s, R^2 = %.4f", e->drift,
-                            e->drift_error, per, e->straightness);
-    free(per);
-    return text;
+    return text_print("slope (%.3g +- %.1g)%s, R^2 = %.4f", e->drift,
+                      e->drift_error, p->per_unit, e->straightness);
 }
 
 static void line_words(const plan *p, const row rows[], size_t count,
@@ -248,12 +235,11 @@ static double level_until(const plan *p, const row rows[], size_t count) {
 static void bounded_words(const plan *p, const row rows[], size_t count,
                           list *words) {
     double until = level_until(p, rows, count);
-    char *unit = verdict_unit(p, " ");
     char *also =
         until > p->t_end && isfinite(until)
             ? text_print(", and up to t = %.4g%s at least, to which it "
                          "was continued",
-                         until, unit)
+                         until, p->unit)
             : text_print("%s", "");
     char *one = text_print("keeps the energy bounded: its error is level over "
                            "the run%s.",
@@ -262,7 +248,6 @@ static void bounded_words(const plan *p, const row rows[], size_t count,
                             "over the run%s.",
                             also);
     common_words(rows, count, NEVH_BOUNDED, one, many, words);
-    free(unit);
     free(also);
     free(one);
     free(many);
@@ -334,20 +319,17 @@ static void warn_of_changes(const row rows[], size_t count, list *words) {
         bool own = differs(rows, count, a) || differs(rows, count, b);
         if (!own && is_repeated(rows, b))
             continue;
-        char *more = text_print("%s of %s%s%s: %s at dt = %.4g, %s at %.4g",
-                                text ? text : "", b->integrator,
-                                own ? " with " : "", own ? b->gradient : "",
-                                nevh_verdict_name(a->energy.verdict), a->dt,
-                                nevh_verdict_name(b->energy.verdict), b->dt);
-        free(text);
-        text = text_print("%s;", more);
-        free(more);
+        text_extend(&text, "%s of %s%s%s: %s at dt = %.4g, %s at %.4g",
+                    text ? ";" : "", b->integrator, own ? " with " : "",
+                    own ? b->gradient : "",
+                    nevh_verdict_name(a->energy.verdict), a->dt,
+                    nevh_verdict_name(b->energy.verdict), b->dt);
     }
     if (text)
         list_print(words,
-                   "Warning: a smaller dt changes the verdict%.*s.  Trust a "
+                   "Warning: a smaller dt changes the verdict%s.  Trust a "
                    "verdict that a still smaller dt confirms.",
-                   (int)strlen(text) - 1, text);
+                   text);
     free(text);
 }
 

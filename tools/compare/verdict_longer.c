@@ -8,11 +8,8 @@
 /* The end of the run that a row's verdict is from. */
 char *verdict_until(const plan *p, const row *r) {
     double start = p->run->t_start;
-    char *unit = verdict_unit(p, " ");
-    char *text =
-        text_print("%.4g%s", start + r->followed * (r->t_end - start), unit);
-    free(unit);
-    return text;
+    return text_print("%.4g%s", start + r->followed * (r->t_end - start),
+                      p->unit);
 }
 
 /* The outcome of a calm run when it is continued. */
@@ -40,22 +37,21 @@ static void open_run_words(const plan *p, const row *r, const char *subject,
     double start = p->run->t_start, span = r->t_end - start;
     double seen = r->followed > 0 ? r->followed : 1;
     double decides = rounded_up(start + 4 * seen * span);
-    char *unit = verdict_unit(p, " ");
     char *until = verdict_until(p, r);
     if (r->followed > 0 && r->longer.max > 2 * r->energy.max)
         list_print(words,
                    "%s: the energy error is at most %.1e in the run and %.1e "
                    "when it is continued until t = %s; a run until t = %g%s "
                    "may show whether it keeps growing.",
-                   subject, r->energy.max, r->longer.max, until, decides, unit);
+                   subject, r->energy.max, r->longer.max, until, decides,
+                   p->unit);
     else
         list_print(
             words,
             "%s: the run is too short for a verdict on the energy%s%s; a "
             "run until t = %g%s may decide.",
             subject, r->followed > 0 ? ", also when continued until t = " : "",
-            r->followed > 0 ? until : "", decides, unit);
-    free(unit);
+            r->followed > 0 ? until : "", decides, p->unit);
     free(until);
 }
 
@@ -76,7 +72,6 @@ void verdict_open_words(const plan *p, const row rows[], size_t count,
     const nevh_energy_report *e = r->followed > 0 ? &r->longer : &r->energy;
     char *subject = verdict_subject(p, rows, count, r);
     char *until = r->followed > 0 ? verdict_until(p, r) : NULL;
-    char *unit = verdict_unit(p, " ");
     if (nevh_energy_passes_over(e))
         list_print(words,
                    "%s: H changes within a step, and the energy error, up to "
@@ -96,7 +91,7 @@ void verdict_open_words(const plan *p, const row rows[], size_t count,
         list_print(words,
                    "%s: it stopped at t = %.4g%s, too early for a verdict on "
                    "the energy.",
-                   subject, r->stopped, unit);
+                   subject, r->stopped, p->unit);
     else if (is_hidden(&r->energy))
         list_print(
             words,
@@ -109,7 +104,6 @@ void verdict_open_words(const plan *p, const row rows[], size_t count,
         open_run_words(p, r, subject, words);
     free(subject);
     free(until);
-    free(unit);
 }
 
 /* To a motion of far larger energies, in the longer run. */
@@ -167,17 +161,16 @@ void verdict_followed_words(const plan *p, const row rows[], size_t count,
         if (!list_has(&names, rows[i].integrator))
             list_add(&names, rows[i].integrator);
     }
-    char *joined = list_joined(&names), *unit = verdict_unit(p, " ");
+    char *joined = list_joined(&names);
     double start = p->run->t_start, span = p->t_end - start;
     if (names.count)
         list_print(
             words,
             "%.4g%s is too short to judge %s: %s from runs to t = %.4g%s "
             "at most, which the table does not show.",
-            span, unit, joined,
+            span, p->unit, joined,
             names.count == 1 ? "its verdict is" : "their verdicts are",
-            start + most * span, unit);
+            start + most * span, p->unit);
     free(joined);
-    free(unit);
     list_free(&names);
 }

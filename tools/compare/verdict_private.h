@@ -10,8 +10,6 @@ bool verdict_is(const row *, nevh_verdict);
 /* "verlet at dt = 0.1", and the gradient where there are several. */
 char *verdict_subject(const plan *, const row rows[], size_t count,
                       const row *);
-/* The unit of time after that, or "". */
-char *verdict_unit(const plan *, const char *before);
 
 /* verdict_longer.c: what runs that are continued say of rows. */
 /* The end of the run that a row's verdict is from. */

@@ -299,12 +299,9 @@ static plot *draw_map(map *m, const direction d[2]) {
 
 static int refuse_directions(const map *m) {
     char *names = text_print("%s", "");
-    for (size_t k = 0; k < m->varied; k++) {
-        char *more = text_print("%s%s%s", names, k ? ", " : "",
-                                nevh_sweep_column(m->sweep, k));
-        free(names);
-        names = more;
-    }
+    for (size_t k = 0; k < m->varied; k++)
+        text_extend(&names, "%s%s", k ? ", " : "",
+                    nevh_sweep_column(m->sweep, k));
     int status = tool_refuse(
         "--picture draws an outcome over one direction, or two whose values "
         "are combined, as range(A, B, N) gives them: not over %s",

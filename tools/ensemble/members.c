@@ -86,16 +86,15 @@ void members_note(const members *m, list *notes) {
 
 void members_note_energies(const members *m, const plan *p, list *notes) {
     static const double equal = 1e-6;
-    const char *unit = nevh_scene_label(p->scene, "energy");
     bool apart = m->high - m->low > equal * fmax(fabs(m->low), fabs(m->high));
     if (m->count > 1 && p->n > 1 && apart && !p->time && !p->friction)
         list_print(
             notes,
-            "energies: H = %.6g ... %.6g%s%s of the %zu orbits: they "
+            "energies: H = %.6g ... %.6g%s of the %zu orbits: they "
             "are not on one surface of energy, and their curves may "
             "cross; --vary 'p_%s = solve(H = %.6g, from %.3g)' gives all "
             "the same",
-            m->low, m->high, *unit ? " " : "", unit, m->count,
+            m->low, m->high, p->energy_unit, m->count,
             nevh_scene_coordinate(p->scene, 0), m->high,
             p->p[0] != 0 ? p->p[0] : 1);
 }

@@ -26,27 +26,23 @@ static char *python_text(const char *text) {
         code &= more ? 0x3Fu >> more : 0x7Fu;
         for (; more && *at; more--)
             code = code << 6 | (*at++ & 0x3Fu);
-        char *longer = text_print(code == '\'' || code == '\\' ? "%s\\%c"
-                                  : code < 0x7F                ? "%s%c"
-                                  : code < 0x10000             ? "%s\\u%04x"
-                                                               : "%s\\U%08x",
-                                  all, code);
-        free(all);
-        all = longer;
+        text_extend(&all,
+                    code == '\'' || code == '\\' ? "\\%c"
+                    : code < 0x7F                ? "%c"
+                    : code < 0x10000             ? "\\u%04x"
+                                                 : "\\U%08x",
+                    code);
     }
-    char *whole = text_print("%s'", all);
-    free(all);
-    return whole;
+    text_extend(&all, "'");
+    return all;
 }
 
 char *store_header(store *s) {
     char *fields = text_print("%s", "('status', '|u1'), ('', '|V7')");
     for (size_t i = 0; i < s->columns->count; i++) {
         char *name = python_text(s->columns->item[i]);
-        char *longer = text_print("%s, (%s, '<f8')", fields, name);
+        text_extend(&fields, ", (%s, '<f8')", name);
         free(name);
-        free(fields);
-        fields = longer;
     }
     char *text = text_print("{'descr': [%s], 'fortran_order': False, 'shape': "
                             "(%" PRIu64 ",), }",

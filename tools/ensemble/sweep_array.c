@@ -59,19 +59,15 @@ static char *describe(const sweep_job *j) {
 /* For who reads the side file. */
 static char *tell_story(const sweep_job *j) {
     char *all = text_print("%s", "");
-    for (size_t i = 0; i < j->notes.count; i++) {
-        char *longer = text_print("%s# %s\n", all, j->notes.item[i]);
-        free(all);
-        all = longer;
-    }
+    for (size_t i = 0; i < j->notes.count; i++)
+        text_extend(&all, "# %s\n", j->notes.item[i]);
     char *scene = tool_owned(nevh_scene_write(j->plan.scene, NULL));
-    char *whole =
-        text_print("%s# status: 0 not yet run, 1 done, 2 failed, 3 no "
-                   "start\n\n[scene as run]\n%s",
-                   all, scene);
+    text_extend(&all,
+                "# status: 0 not yet run, 1 done, 2 failed, 3 no start\n\n"
+                "[scene as run]\n%s",
+                scene);
     free(scene);
-    free(all);
-    return whole;
+    return all;
 }
 
 static bool is_wanted(void *data, uint64_t member) {

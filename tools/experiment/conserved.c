@@ -88,7 +88,6 @@ static bool changed_notes(const plan *p, list *notes, bool *followed) {
     size_t count = nevh_scene_shown_count(p->scene, NEVH_INVARIANTS);
     double most = p->run->t_start + MOST_STEPS * p->dt[0];
     double t_end = fmin(p->t_end, most);
-    const char *unit = nevh_scene_label(p->scene, "t");
     double *size = tool_allocate(count, sizeof *size);
     double *one = changes(p, t_end, coarse), *two = changes(p, t_end, fine);
     *followed = one && two;
@@ -97,10 +96,10 @@ static bool changed_notes(const plan *p, list *notes, bool *followed) {
         if (two[i] > 0.5 * one[i] && two[i] > rounding * size[i])
             list_print(notes,
                        "%s of [invariants] is not conserved: it changes by "
-                       "%.3g until t = %.4g%s%s, and by %.3g where errors of "
+                       "%.3g until t = %.4g%s, and by %.3g where errors of "
                        "steps are 10000 times smaller.",
                        nevh_scene_shown_name(p->scene, NEVH_INVARIANTS, i),
-                       one[i], t_end, *unit ? " " : "", unit, two[i]);
+                       one[i], t_end, p->unit, two[i]);
     free(size);
     free(one);
     free(two);

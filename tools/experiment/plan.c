@@ -154,6 +154,11 @@ static void take_lists(plan *p, const options *o) {
     p->tolerances = o->tolerances ? o->tolerances : p->run->tolerances;
 }
 
+static char *unit_after(const plan *p, const char *mark, const char *name) {
+    const char *unit = nevh_scene_label(p->scene, name);
+    return text_print("%s%s", *unit ? mark : "", unit);
+}
+
 static void take_settings(plan *p, const options *o) {
     p->system = nevh_scene_system(p->scene);
     p->run = nevh_scene_run_settings(p->scene);
@@ -171,6 +176,9 @@ static void take_settings(plan *p, const options *o) {
     p->friction = nevh_system_friction(p->system, NULL);
     p->time = !(nevh_system_traits(p->system) & NEVH_AUTONOMOUS);
     p->balance = p->friction || p->time;
+    p->unit = unit_after(p, " ", "t");
+    p->per_unit = unit_after(p, "/", "t");
+    p->energy_unit = unit_after(p, " ", "energy");
 }
 
 /* The formulas of an option. */
@@ -220,10 +228,8 @@ char *plan_title(const nevh_scene *scene, const char *name, const options *o) {
     char *title = text_print("%s", *own ? own : name);
     for (size_t i = 0; i < o->settings.count; i++) {
         char *change = change_of(o->settings.item[i]);
-        char *longer = text_print("%s%s%s", title, i ? ", " : ", but ", change);
-        free(title);
+        text_extend(&title, "%s%s", i ? ", " : ", but ", change);
         free(change);
-        title = longer;
     }
     return title;
 }
@@ -255,6 +261,9 @@ void plan_free(plan *p) {
     list_free(&p->integrators);
     list_free(&p->gradients);
     free(p->title);
+    free(p->unit);
+    free(p->per_unit);
+    free(p->energy_unit);
     free(p->given_dt);
     free(p->at);
     free(p->q);
@@ -462,15 +471,14 @@ static void note_effects(const plan *p, list *notes) {
 }
 
 void plan_notes(const plan *p, list *notes) {
-    const char *unit = nevh_scene_label(p->scene, "t");
     char *structure = plan_structure(p);
     list_add(notes, p->title);
     note_effects(p, notes);
     list_add(notes, structure);
     list_print(notes,
-               nevh_scene_stops(p->scene) ? "t = %g ... %g%s%s, or until %s"
-                                          : "t = %g ... %g%s%s",
-               p->run->t_start, p->t_end, *unit ? " " : "", unit,
+               nevh_scene_stops(p->scene) ? "t = %g ... %g%s, or until %s"
+                                          : "t = %g ... %g%s",
+               p->run->t_start, p->t_end, p->unit,
                nevh_scene_stop_text(p->scene));
     free(structure);
 }

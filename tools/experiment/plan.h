@@ -15,6 +15,7 @@ typedef struct {
     const nevh_scene_run *run;
     const char *name;
     char *title; /* of the scene, and what options changed */
+    char *unit, *per_unit, *energy_unit; /* " s", "/s", " J"; "": none */
     size_t n;
     double *q, *p; /* at t_start */
     double t_end;

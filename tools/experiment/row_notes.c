@@ -51,13 +51,12 @@ static void note_gradients(const plan *p, list *notes) {
 
 static void note_scale(const plan *p, const row rows[], size_t count,
                        list *notes) {
-    const char *unit = nevh_scene_label(p->scene, "energy");
     for (size_t i = 0; i < count; i++)
         if (rows[i].ran) {
             list_print(notes,
-                       "energy_scale: %.9g%s%s (errors are relative to "
+                       "energy_scale: %.9g%s (errors are relative to "
                        "it; H at the start is %.9g)",
-                       rows[i].energy.scale, *unit ? " " : "", unit,
+                       rows[i].energy.scale, p->energy_unit,
                        rows[i].energy.initial);
             return;
         }

@@ -67,13 +67,9 @@ char *stability_cause(const nevh_integrator *scheme, double limit, double dt,
                    "fastest (omega = %.3g)",
                    x, fastest->turning_at, w);
     char *text = cause_at(scheme, limit, x, where);
-    if (turn && (x <= limit)) {
-        char *longer =
-            text_print("%s%s%s steps make a turn: a resonance",
-                       text ? text : where, text ? "; " : ": ", turn);
-        free(text);
-        text = longer;
-    }
+    if (turn && (x <= limit))
+        text_extend(&text, "%s%s%s steps make a turn: a resonance",
+                    text ? "" : where, text ? "; " : ": ", turn);
     free(where);
     return text;
 }
@@ -157,13 +153,10 @@ static char *cause_of(const plan *p, const row *r) {
     double limit = nevh_stability_limit(r->scheme);
     double x = fabs(r->dt) * fastest.turning;
     char *cause = stability_cause(r->scheme, limit, r->dt, &fastest);
-    if (!cause || !p->friction || x > 1 ||
-        stability_exceeded(r->scheme, limit, x))
-        return cause;
-    char *longer =
-        text_print("%s, or dt is too long for a rate of friction", cause);
-    free(cause);
-    return longer;
+    if (cause && p->friction && x <= 1 &&
+        !stability_exceeded(r->scheme, limit, x))
+        text_extend(&cause, ", or dt is too long for a rate of friction");
+    return cause;
 }
 
 /* All rows from there on that the same is to be said of; their causes go. */

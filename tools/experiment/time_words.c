@@ -48,18 +48,12 @@ static char *jumps_text(const plan *p, size_t *count) {
     for (size_t i = 0; i < nevh_timing_breaks(p->timing); i++) {
         nevh_time_break b = nevh_timing_break(p->timing, i);
         bool inside = b.before > p->run->t_start && b.after < p->t_end;
-        if (!b.jump || !inside || (*count)++ >= SHOWN)
-            continue;
-        char *longer = text_print("%s%s%.6g", text, *text ? ", " : "",
-                                  (b.before + b.after) / 2);
-        free(text);
-        text = longer;
+        if (b.jump && inside && (*count)++ < SHOWN)
+            text_extend(&text, "%s%.6g", *text ? ", " : "",
+                        (b.before + b.after) / 2);
     }
-    if (*count > SHOWN) {
-        char *longer = text_print("%s and %zu more", text, *count - SHOWN);
-        free(text);
-        text = longer;
-    }
+    if (*count > SHOWN)
+        text_extend(&text, " and %zu more", *count - SHOWN);
     return text;
 }
 
@@ -117,18 +111,17 @@ static list too_long(const row rows[], size_t count, double shortest,
 }
 
 void time_words(const plan *p, const row rows[], size_t count, list *words) {
-    const char *effect = "", *unit = nevh_scene_label(p->scene, "t");
-    const char *space = *unit ? " " : "";
+    const char *effect = "";
     double at = 0, least,
            shortest = nevh_timing_shortest(p->timing, &at, &effect);
     list names = too_long(rows, count, 2 * shortest, &least);
     char *joined = list_joined(&names);
     if (names.count)
         list_print(words,
-                   "%s changes within %.2g%s%s near t = %.6g%s%s: steps of "
-                   "%.4g%s%s or longer pass over it (%s).",
-                   effect, shortest, space, unit, at, space, unit, least, space,
-                   unit, joined);
+                   "%s changes within %.2g%s near t = %.6g%s: steps of "
+                   "%.4g%s or longer pass over it (%s).",
+                   effect, shortest, p->unit, at, p->unit, least, p->unit,
+                   joined);
     free(joined);
     list_free(&names);
 }
@@ -138,12 +131,11 @@ double plan_ends(const plan *p) {
 }
 
 char *ends_text(const plan *p, double t) {
-    const char *unit = nevh_scene_label(p->scene, "t");
     if (!isfinite(t))
         return NULL;
-    return text_print("the solution itself ends at t = %.6g%s%s, where it "
+    return text_print("the solution itself ends at t = %.6g%s, where it "
                       "changes without bound: no scheme can continue",
-                      t, *unit ? " " : "", unit);
+                      t, p->unit);
 }
 
 int plan_refuse_end(const plan *p) {
@@ -211,15 +203,14 @@ char *plan_doubts_again(const plan *p, const char *integrator, double dt) {
 }
 
 void passed_words(const plan *p, const row rows[], size_t count, list *words) {
-    const char *unit = nevh_scene_label(p->scene, "t");
     for (size_t i = 0; i < count; i++) {
         const row *r = &rows[i];
         if (r->passed_effect)
             list_print(words,
-                       "%s at %s = %.4g: a step before t = %.6g%s%s passes a "
+                       "%s at %s = %.4g: a step before t = %.6g%s passes a "
                        "pole of %s: what follows is not the orbit of H.",
                        r->integrator, r->tolerance > 0 ? "tolerance" : "dt",
                        r->tolerance > 0 ? r->tolerance : r->dt, r->passed,
-                       *unit ? " " : "", unit, r->passed_effect);
+                       p->unit, r->passed_effect);
     }
 }

@@ -287,29 +287,25 @@ static void edge_notes(const plan *p, const trial_run *f, list *notes) {
 
 /* When rounding errors of a chaotic orbit are as large as it is. */
 static void horizon_notes(const plan *p, const trial_run *f, list *notes) {
-    const char *unit = nevh_scene_label(p->scene, "t");
-    const char *space = *unit ? " " : "", *per = *unit ? "/" : "";
     double start = p->run->t_start, grown = -log(DBL_EPSILON);
     double exponent = f->chaos.exponent, error = f->chaos.error;
     double horizon = start + grown / exponent;
     char *range = text_print("%.3g to %.3g", start + grown / (exponent + error),
                              start + grown / (exponent - error));
     list_print(notes,
-               "Chaotic: Lyapunov exponent %.2g +- %.1g%s%s (over %.3g%s%s)."
-               "  Predictability horizon: %sabout t = %.3g%s%s (%s, as the "
+               "Chaotic: Lyapunov exponent %.2g +- %.1g%s (over %.3g%s)."
+               "  Predictability horizon: %sabout t = %.3g%s (%s, as the "
                "exponent is uncertain): rounding errors have then grown to the "
                "size of the orbit.  Positions after it cannot be predicted; "
                "energies and averages can.",
-               exponent, error, per, unit, f->chaos.report.t - start, space,
-               unit, horizon < p->t_end ? "" : "beyond the run, ", horizon,
-               space, unit, range);
+               exponent, error, p->per_unit, f->chaos.report.t - start, p->unit,
+               horizon < p->t_end ? "" : "beyond the run, ", horizon, p->unit,
+               range);
     free(range);
 }
 
 /* Notes the time followed, and its meaning for a longer run. */
 static void outlook_notes(const plan *p, const trial_run *f, list *notes) {
-    const char *unit = nevh_scene_label(p->scene, "t");
-    const char *space = *unit ? " " : "", *per = *unit ? "/" : "";
     double time = f->chaos.report.t - p->run->t_start;
     if (f->plane) {
         list_add(notes, "Regular: one degree of freedom without a drive cannot "
@@ -321,26 +317,25 @@ static void outlook_notes(const plan *p, const trial_run *f, list *notes) {
         horizon_notes(p, f, notes);
         break;
     case NEVH_UNSTABLE_ORBIT:
-        list_print(
-            notes,
-            "Unstable, not chaotic: Lyapunov exponent about %.2g%s%s over "
-            "%.3g%s%s; nearby orbits separate as near an unstable "
-            "equilibrium or periodic orbit, or in an escape.",
-            f->chaos.exponent, per, unit, time, space, unit);
+        list_print(notes,
+                   "Unstable, not chaotic: Lyapunov exponent about %.2g%s over "
+                   "%.3g%s; nearby orbits separate as near an unstable "
+                   "equilibrium or periodic orbit, or in an escape.",
+                   f->chaos.exponent, p->per_unit, time, p->unit);
         break;
     case NEVH_REGULAR:
         list_print(notes,
-                   "Regular: over %.3g%s%s the distance of neighbouring orbits "
+                   "Regular: over %.3g%s the distance of neighbouring orbits "
                    "does not grow exponentially (Lyapunov exponent 0 within "
-                   "%.1g%s%s).",
-                   time, space, unit, f->chaos.error, per, unit);
+                   "%.1g%s).",
+                   time, p->unit, f->chaos.error, p->per_unit);
         break;
     default:
         if (f->length > 0)
             list_print(notes,
-                       "Chaotic or regular: %.3g%s%s are too short to decide; "
+                       "Chaotic or regular: %.3g%s are too short to decide; "
                        "--t-end makes the run longer.",
-                       f->length, space, unit);
+                       f->length, p->unit);
         else
             list_print(notes,
                        "Chaotic or regular: unknown, since the run ends at "
@@ -351,42 +346,39 @@ static void outlook_notes(const plan *p, const trial_run *f, list *notes) {
 
 /* Notes changes of H with time that are faster than a step. */
 static void change_notes(const plan *p, list *notes) {
-    const char *unit = nevh_scene_label(p->scene, "t"), *effect = "";
-    const char *space = *unit ? " " : "";
+    const char *effect = "";
     double at, time = nevh_timing_shortest(p->timing, &at, &effect);
     if (time < p->dt[0])
         list_print(notes,
-                   "%s changes within %.2g%s%s near t = %.6g%s%s: steps of dt "
-                   "= %.4g%s%s pass over it",
-                   effect, time, space, unit, at, space, unit, p->dt[0], space,
-                   unit);
+                   "%s changes within %.2g%s near t = %.6g%s: steps of dt "
+                   "= %.4g%s pass over it",
+                   effect, time, p->unit, at, p->unit, p->dt[0], p->unit);
     time_notes(p, notes);
 }
 
 void trial_run_words(const plan *p, const trial_run *f, list *notes) {
-    const char *unit = nevh_scene_label(p->scene, "t");
-    const char *space = *unit ? " " : "", *per = *unit ? " rad/" : "";
+    const char *rad = *p->unit ? " rad" : "";
     if (f->drive > f->frequency)
         list_print(notes,
                    "Highest frequency: omega = %.3g%s%s, of %s with time; "
-                   "omega dt = %.3g at dt = %.4g%s%s",
-                   f->drive, per, unit, f->driver, p->dt[0] * f->drive,
-                   p->dt[0], space, unit);
+                   "omega dt = %.3g at dt = %.4g%s",
+                   f->drive, rad, p->per_unit, f->driver, p->dt[0] * f->drive,
+                   p->dt[0], p->unit);
     if (f->frequency > 0)
         list_print(notes,
-                   "%s: omega = %.3g%s%s (t = %.4g%s%s); "
-                   "omega dt = %.3g at dt = %.4g%s%s",
+                   "%s: omega = %.3g%s%s (t = %.4g%s); "
+                   "omega dt = %.3g at dt = %.4g%s",
                    f->drive > f->frequency ? "Highest frequency of the motion"
                                            : "Highest frequency",
-                   f->frequency, per, unit, f->frequency_at, space, unit,
-                   p->dt[0] * f->frequency, p->dt[0], space, unit);
+                   f->frequency, rad, p->per_unit, f->frequency_at, p->unit,
+                   p->dt[0] * f->frequency, p->dt[0], p->unit);
     change_notes(p, notes);
     if (f->pace > f->frequency)
         list_print(notes,
                    "Fastest growth: small displacements grow at a rate of "
-                   "%.3g%s%s (t = %.4g%s%s); rate dt = %.3g at dt = %.4g%s%s",
-                   f->pace, *unit ? "/" : "", unit, f->pace_at, space, unit,
-                   p->dt[0] * f->pace, p->dt[0], space, unit);
+                   "%.3g%s (t = %.4g%s); rate dt = %.3g at dt = %.4g%s",
+                   f->pace, p->per_unit, f->pace_at, p->unit,
+                   p->dt[0] * f->pace, p->dt[0], p->unit);
     outlook_notes(p, f, notes);
     if (isfinite(f->noise))
         list_print(notes,

@@ -241,11 +241,8 @@ static char *add_values(char *line, const fitting *f, bool starts) {
         if (f->item[k].start != starts)
             continue;
         double value = f->item[k].value;
-        char *longer = text_print("%s%s%s=%.*g", values, *values ? "," : "",
-                                  f->item[k].name,
-                                  digits_of(value, f->item[k].error), value);
-        free(values);
-        values = longer;
+        text_extend(&values, "%s%s=%.*g", *values ? "," : "", f->item[k].name,
+                    digits_of(value, f->item[k].error), value);
     }
     if (*values)
         line = shell_option(line, starts ? "start" : "set", values);

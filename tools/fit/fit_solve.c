@@ -33,11 +33,9 @@ static void tell_direction(fitting *f, const gsl_vector *along) {
         double change = part * f->item[k].scale / size;
         relative = relative && isfinite(change);
         first = first != 0 ? first : change;
-        char *longer = text_print("%s%s%s by %.3g %%", f->direction,
-                                  *f->direction ? " and " : "", f->item[k].name,
-                                  change / first);
-        free(f->direction);
-        f->direction = longer;
+        text_extend(&f->direction, "%s%s by %.3g %%",
+                    *f->direction ? " and " : "", f->item[k].name,
+                    change / first);
     }
     if (!relative)
         *f->direction = '\0';

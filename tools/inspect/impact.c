@@ -254,14 +254,12 @@ static bool put_row(const options *o, const char *effect, bool on,
 /* Differences that chaos makes, of effects of any size. */
 static void chaos_words(const plan *p, list *words) {
     trial_run found = trial_run_new(p, true);
-    const char *unit = nevh_scene_label(p->scene, "t");
     if (found.chaos.report.verdict == NEVH_CHAOTIC)
-        list_print(
-            words,
-            "The orbit is chaotic: a difference grows by a factor e in "
-            "%.3g%s%s, until orbits are unrelated.  Compare the times of "
-            "1 %%, not the final differences, which only show that.",
-            1 / found.chaos.exponent, *unit ? " " : "", unit);
+        list_print(words,
+                   "The orbit is chaotic: a difference grows by a factor e in "
+                   "%.3g%s, until orbits are unrelated.  Compare the times of "
+                   "1 %%, not the final differences, which only show that.",
+                   1 / found.chaos.exponent, p->unit);
     free(found.failure);
 }
 

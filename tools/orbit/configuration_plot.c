@@ -234,7 +234,6 @@ static void set_window(plot *to, const run_picture *picture,
 plot *plot_configuration(run_picture *picture) {
     bob_list b = bobs_of(picture->plan.scene);
     orbit *first = picture->orbits.item;
-    const char *unit = nevh_scene_label(picture->plan.scene, "t");
     plot *to = NULL;
     char *cut = follow(picture, &b);
     picture_refer(picture, 2 * b.count, fill, &b);
@@ -256,8 +255,8 @@ plot *plot_configuration(run_picture *picture) {
                      : picture_columns(picture) > 3 ? 2
                                                     : picture_columns(picture));
     char *more =
-        text_print("circles: the start; discs: t = %.6g%s%s%s%s", first->t,
-                   *unit ? " " : "", unit, *cut ? "; " : "", cut);
+        text_print("circles: the start; discs: t = %.6g%s%s%s", first->t,
+                   picture->plan.unit, *cut ? "; " : "", cut);
     free(cut);
     picture_note(picture, to, more);
     free(more);
@@ -354,7 +353,6 @@ static plot *draw_frame(const run_picture *picture, const bob_list *b,
                         size_t frame, const double low[2], const double high[2],
                         const char *more) {
     const plan *p = &picture->plan;
-    const char *unit = nevh_scene_label(p->scene, "t");
     double begin = p->run->t_start, span = p->t_end - begin;
     int digits = (int)fmax(0, 2 - floor(log10(span)));
     char *x = axis_label(p, b, 0), *y = axis_label(p, b, 1);
@@ -372,9 +370,9 @@ static plot *draw_frame(const run_picture *picture, const bob_list *b,
         plot_span_y(to, low[1], high[1]);
         draw_moment(to, b, o, frame * EACH);
     }
-    char *when = text_print("t = %.*f%s%s%s%s", digits,
-                            begin + span * (double)frame / FRAMES,
-                            *unit ? " " : "", unit, *more ? "; " : "", more);
+    char *when = text_print("t = %.*f%s%s%s", digits,
+                            begin + span * (double)frame / FRAMES, p->unit,
+                            *more ? "; " : "", more);
     picture_note(picture, to, when);
     free(when);
     free(x);

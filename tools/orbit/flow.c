@@ -237,9 +237,8 @@ static void show_row(table *t, const flow_job *j, const flow_row *r) {
 }
 
 static table *shown(const flow_job *j) {
-    const char *unit = nevh_scene_label(j->plan.scene, "t");
-    char *dt = text_print(*unit ? "dt/%s" : "dt%s", unit);
-    char *time = text_print(*unit ? "t/%s" : "t%s", unit);
+    char *dt = text_print("dt%s", j->plan.per_unit);
+    char *time = text_print("t%s", j->plan.per_unit);
     table *t = table_new();
     table_column(t, "integrator");
     table_column(t, "sympl.");

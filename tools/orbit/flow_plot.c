@@ -116,7 +116,6 @@ static char *heading_of(const flow_job *j, const flow_row *r, size_t time,
                         bool named, const window *w) {
     nevh_loop_area at = nevh_loop_result(r->loop, time);
     double ratio = at.area / nevh_loop_result(r->loop, 0).area;
-    const char *unit = nevh_scene_label(j->plan.scene, "t");
     char *area = isnan(at.area) ? text_print("failed")
                  : !flow_resolved(at) && !at.inside
                      ? text_print("area unresolved")
@@ -124,10 +123,9 @@ static char *heading_of(const flow_job *j, const flow_row *r, size_t time,
                                           : text_print("area %.4g", ratio);
     const char *where =
         isnan(at.area) || is_shown(j, r->loop, time, w) ? "" : ", outside";
-    char *text = named ? text_print("%s, t = %.4g%s%s", r->integrator, at.t,
-                                    *unit ? " " : "", unit)
-                       : text_print("t = %.4g%s%s, %s%s", at.t,
-                                    *unit ? " " : "", unit, area, where);
+    char *text =
+        named ? text_print("%s, t = %.4g%s", r->integrator, at.t, j->plan.unit)
+              : text_print("t = %.4g%s, %s%s", at.t, j->plan.unit, area, where);
     free(area);
     return text;
 }

@@ -24,8 +24,7 @@ static void add(orbits *all, const plan *p, const char *integrator,
 
 static char *name_of(const plan *p, const char *integrator, double dt,
                      bool schemes, bool steps) {
-    const char *unit = nevh_scene_label(p->scene, "t");
-    char *step = text_print("dt = %.4g%s%s", dt, *unit ? " " : "", unit);
+    char *step = text_print("dt = %.4g%s", dt, p->unit);
     char *name = schemes && steps ? text_print("%s, %s", integrator, step)
                  : steps          ? text_print("%s", step)
                                   : text_print("%s", integrator);

@@ -19,11 +19,9 @@ static char *pairs_of(const options *o, const plan *p) {
             list_add(&names, nevh_scene_coordinate(p->scene, k));
     for (size_t i = 0; i < names.count; i++) {
         const char *name = names.item[i], *comma = i ? "," : "";
-        char *longer = strchr(name, ':')
-                           ? text_print("%s%s%s", text, comma, name)
-                           : text_print("%s%s%s:p_%s", text, comma, name, name);
-        free(text);
-        text = longer;
+        text_extend(&text, "%s%s", comma, name);
+        if (!strchr(name, ':'))
+            text_extend(&text, ":p_%s", name);
     }
     list_free(&names);
     return text;

@@ -187,14 +187,13 @@ static double energy_change(const portrait_job *j, const orbits_of *o) {
 /* Orbits of a drive, or under friction, leave the levels of H. */
 static char *heading_of(const portrait_job *j, const orbits_of *o) {
     const plan *p = &j->plan;
-    const char *unit = nevh_scene_label(p->scene, "energy");
     const char *failed = o->failed ? ", then failed" : "";
     if (p->time || p->friction)
         return text_print("%s; lines: H at t = %.6g%s%s", o->integrator,
                           p->run->t_start,
                           p->friction ? ", without friction" : "", failed);
-    return text_print("%s: H within %.2g%s%s%s", o->integrator,
-                      energy_change(j, o), *unit ? " " : "", unit, failed);
+    return text_print("%s: H within %.2g%s%s", o->integrator,
+                      energy_change(j, o), p->energy_unit, failed);
 }
 
 static plot *draw_plane(portrait_job *j) {
@@ -307,7 +306,6 @@ static void print_equilibria(const portrait_job *j) {
     enum { MOST_SHOWN = 200 };
     static const char *const kinds[] = {"centre", "saddle", "degenerate"};
     _Static_assert(sizeof kinds / sizeof *kinds == PORTRAIT_KINDS, "each kind");
-    const char *unit = nevh_scene_label(j->plan.scene, "energy");
     const char *name = nevh_scene_coordinate(j->plan.scene, 0);
     size_t shown = 0, left_out = 0;
     for (size_t i = 0; i < j->levels.count; i++) {
@@ -319,9 +317,8 @@ static void print_equilibria(const portrait_job *j) {
             continue;
         }
         shown++;
-        printf("%s at %s = %.10g, p_%s = %.10g: H = %.10g%s%s\n",
-               kinds[e->kind], name, e->x, name, e->y, e->energy,
-               *unit ? " " : "", unit);
+        printf("%s at %s = %.10g, p_%s = %.10g: H = %.10g%s\n", kinds[e->kind],
+               name, e->x, name, e->y, e->energy, j->plan.energy_unit);
     }
     if (left_out)
         printf("left out: %s%zu equilibria that are farther from the start\n",
@@ -358,14 +355,12 @@ static int draw(portrait_job *j, const options *o) {
         plot_free(to);
         return status;
     }
-    const char *unit = nevh_scene_label(j->plan.scene, "t");
-    char *more =
-        j->plan.n == 1
-            ? text_print("dt = %.4g%s%s; %zu orbit%s, grey: levels of H",
-                         j->plan.dt[0], *unit ? " " : "", unit,
-                         j->members.count, j->members.count == 1 ? "" : "s")
-            : text_print("dt = %.4g%s%s; %zu orbits", j->plan.dt[0],
-                         *unit ? " " : "", unit, j->members.count);
+    char *more = j->plan.n == 1
+                     ? text_print("dt = %.4g%s; %zu orbit%s, grey: levels of H",
+                                  j->plan.dt[0], j->plan.unit, j->members.count,
+                                  j->members.count == 1 ? "" : "s")
+                     : text_print("dt = %.4g%s; %zu orbits", j->plan.dt[0],
+                                  j->plan.unit, j->members.count);
     plot_note_run(to, &j->plan, NULL, more);
     free(more);
     int drawn = plot_write(to, o);

@@ -157,11 +157,8 @@ static void note(run_job *j) {
 static char *describe(const run_job *j) {
     const plan *p = &j->plan;
     char *times = text_print("%s", "");
-    for (size_t i = 0; j->rows.by == BY_TIMES && i < j->rows.count; i++) {
-        char *longer = text_print("%s %.17g", times, j->rows.time[i]);
-        free(times);
-        times = longer;
-    }
+    for (size_t i = 0; j->rows.by == BY_TIMES && i < j->rows.count; i++)
+        text_extend(&times, " %.17g", j->rows.time[i]);
     char *all = text_print(
         "nevh = %s\nscene = %016llx\nintegrator = %s\ndt = %.17g\n"
         "t_end = %.17g\ngradient = %s\ngradient step = %.17g\n"

@@ -192,16 +192,13 @@ void picture_note(const run_picture *picture, plot *to, const char *more) {
     char *scheme =
         all->count == 1 ? plot_scheme(&all->item->plan, all->item->integrator)
         : picture->plan.dts == 1 || picture->options->dt.count <= 1
-            ? text_print("dt = %.4g%s%s", picture->plan.dt[0],
-                         *nevh_scene_label(picture->plan.scene, "t") ? " " : "",
-                         nevh_scene_label(picture->plan.scene, "t"))
+            ? text_print("dt = %.4g%s", picture->plan.dt[0], picture->plan.unit)
             : text_print("%s", all->item->integrator);
     char *others = list_joined(&all->left_out);
     char *text = text_print("%s%s%s", *others ? "not drawn: " : "", others,
                             *others && *more ? "; " : "");
-    char *whole = text_print("%s%s", text, more);
-    plot_note_run(to, &picture->plan, scheme, whole);
-    free(whole);
+    text_extend(&text, "%s", more);
+    plot_note_run(to, &picture->plan, scheme, text);
     free(text);
     free(others);
     free(scheme);

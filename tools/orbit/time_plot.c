@@ -9,10 +9,7 @@
 enum { MOST_PANELS = 9, FEW_ROWS = 80 };
 
 static void add_name(char **text, const char *prefix, const char *name) {
-    char *longer =
-        text_print("%s%s%s%s", *text, **text ? "," : "", prefix, name);
-    free(*text);
-    *text = longer;
+    text_extend(text, "%s%s%s", **text ? "," : "", prefix, name);
 }
 
 /* Coordinates and momenta where they are few, else what the scene shows, else
@@ -159,12 +156,9 @@ static char *panel_label(const run_picture *picture, const column_panels *c,
             continue;
         size_t count, place = place_in_panel(c, k, &count);
         char *label = column_label(&picture->plan, &c->columns.item[k]);
-        char *longer =
-            text_print("%s%s%s%s", text ? text : "", text ? ", " : "", label,
-                       several && place < 5 ? dashes[place] : "");
-        free(text);
+        text_extend(&text, "%s%s%s", text ? ", " : "", label,
+                    several && place < 5 ? dashes[place] : "");
         free(label);
-        text = longer;
     }
     return text;
 }

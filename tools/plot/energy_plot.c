@@ -24,11 +24,10 @@ static const char *quantity(const plan *p) {
 }
 
 char *energy_plot_words(const plan *p) {
-    const char *unit = nevh_scene_label(p->scene, "energy");
     const char *time = nevh_scene_label(p->scene, "t");
     double bin = (p->t_end - p->run->t_start) / MOST_POINTS;
-    char *scale = text_print("errors relative to %.4g%s%s",
-                             plan_energy_scale(p), *unit ? " " : "", unit);
+    char *scale = text_print("errors relative to %.4g%s", plan_energy_scale(p),
+                             p->energy_unit);
     char *text = has_bins(p) ? text_print("%s, the largest in each %.2g%s%s",
                                           scale, bin, *time ? " " : "", time)
                              : text_print("%s", scale);

@@ -123,11 +123,8 @@ char *text_read(const char *name) {
 
 static char *add_list(char *line, const char *option, const list *items) {
     char *joined = text_print("%s", items->count ? items->item[0] : "");
-    for (size_t i = 1; i < items->count; i++) {
-        char *more = text_print("%s,%s", joined, items->item[i]);
-        free(joined);
-        joined = more;
-    }
+    for (size_t i = 1; i < items->count; i++)
+        text_extend(&joined, ",%s", items->item[i]);
     if (items->count)
         line = shell_option(line, option, joined);
     free(joined);
@@ -388,12 +385,8 @@ static int write_page(const options *o, const char *text) {
 /* The title, for tabs and bookmarks: the scenes. */
 static void begin_page(const options *o, FILE *f) {
     char *title = text_print("%s", "nevh report");
-    for (size_t i = 1; i < o->operands.count; i++) {
-        char *more = text_print("%s%s%s", title, i > 1 ? ", " : ": ",
-                                o->operands.item[i]);
-        free(title);
-        title = more;
-    }
+    for (size_t i = 1; i < o->operands.count; i++)
+        text_extend(&title, "%s%s", i > 1 ? ", " : ": ", o->operands.item[i]);
     html_head(f, title, o->variants.count > 1);
     free(title);
 }

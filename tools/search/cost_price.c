@@ -58,12 +58,10 @@ void cost_price(costs *c, list *words) {
             study_run(&c->search, &other, k);
             study_time(&c->search, &other, 0);
             char *more = price(c, best, &other.level[0]);
-            char *longer = more ? text_print("%s, %s", text, more)
-                                : text_print("%s", text);
+            if (more)
+                text_extend(&text, ", %s", more);
             others += more != NULL;
-            free(text);
             free(more);
-            text = longer;
         }
         study_free(&other);
     }

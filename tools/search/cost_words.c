@@ -7,7 +7,6 @@
 
 void cost_notes(const costs *c, list *notes) {
     const plan *p = &c->search.plan;
-    const char *unit = nevh_scene_label(p->scene, "t");
     if (c->whole > p->t_end)
         list_print(notes,
                    "shortened, so that all schemes can be tried; --t-end %g "
@@ -15,8 +14,8 @@ void cost_notes(const costs *c, list *notes) {
                    c->whole);
     list_print(notes,
                "cost: steps that keep the largest %s error of the run below "
-               "10^-digits; CPU ms (dt%s%s), * cheapest",
-               search_error(&c->search), *unit ? "/" : "", unit);
+               "10^-digits; CPU ms (dt%s), * cheapest",
+               search_error(&c->search), p->per_unit);
 }
 
 /* Levels whose errors are neither coarse nor at rounding. */
@@ -186,12 +185,8 @@ static char *names_where(const costs *c,
     char *names = text_print("%s", "");
     for (size_t i = 0; i < c->count; i++) {
         const study *l = &c->study[i];
-        if (!l->count || !holds(c, l) || strstr(names, l->integrator))
-            continue;
-        char *longer =
-            text_print(*names ? "%s, %s" : "%s%s", names, l->integrator);
-        free(names);
-        names = longer;
+        if (l->count && holds(c, l) && !strstr(names, l->integrator))
+            text_extend(&names, "%s%s", *names ? ", " : "", l->integrator);
     }
     return names;
 }

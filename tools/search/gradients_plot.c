@@ -143,15 +143,13 @@ static void draw_all(const drawing *d, const options *o) {
 
 static char *words(const drawing *d) {
     const gradients_job *c = d->gradients_job;
-    const char *unit = nevh_scene_label(c->plan->scene, "t");
-    return text_print("at %zu states of an orbit by %s, dt = %.4g%s%s; against "
-                      "the %s gradient, relative to its largest component%s",
-                      c->exact.count, c->integrator, c->dt, *unit ? " " : "",
-                      unit, c->yardstick,
-                      d->relative
-                          ? ""
-                          : "; discs: with a step for each variable, as "
-                            "nevh chooses, over the shortest");
+    return text_print(
+        "at %zu states of an orbit by %s, dt = %.4g%s; against "
+        "the %s gradient, relative to its largest component%s",
+        c->exact.count, c->integrator, c->dt, c->plan->unit, c->yardstick,
+        d->relative ? ""
+                    : "; discs: with a step for each variable, as "
+                      "nevh chooses, over the shortest");
 }
 
 int gradients_plot(const options *o, const gradients_job *c) {

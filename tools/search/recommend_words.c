@@ -138,16 +138,15 @@ static void size_words(const recommendation *a, const row *r, list *words) {
 
 /* In the orbit's own measure. */
 static void step_words(const recommendation *a, const row *r, list *words) {
-    const char *unit = nevh_scene_label(a->search.plan.scene, "t");
     double steps = a->period / r->dt;
     if (isfinite(steps))
         list_print(words,
-                   steps < 1 ? "A step is %.3g times %.3g%s%s, the shortest "
+                   steps < 1 ? "A step is %.3g times %.3g%s, the shortest "
                                "period near the start of the orbit."
-                             : "That is %.3g steps in %.3g%s%s, the shortest "
+                             : "That is %.3g steps in %.3g%s, the shortest "
                                "period near the start of the orbit.",
-                   steps < 1 ? 1 / steps : steps, a->period, *unit ? " " : "",
-                   unit);
+                   steps < 1 ? 1 / steps : steps, a->period,
+                   a->search.plan.unit);
 }
 
 static void longer_words(const recommendation *a, const row *r, list *words) {

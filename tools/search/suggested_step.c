@@ -168,7 +168,6 @@ static const row *shortest(const row rows[], size_t count, const row *first) {
 }
 
 static void row_words(const plan *p, const row *r, list *words) {
-    const char *unit = nevh_scene_label(p->scene, "t"), *gap = *unit ? " " : "";
     bool loses = nevh_integrator_symplectic(r->scheme) == NEVH_NO;
     bool always = loses && nevh_stability_limit(r->scheme) == 0;
     const char *gains = always ? " gains energy at every dt, and" : "";
@@ -176,17 +175,17 @@ static void row_words(const plan *p, const row *r, list *words) {
     suggested_step found = find(p, r);
     if (found.dt > 0 && found.guessed)
         list_print(words,
-                   "%s%s would keep its error below %g %% until t = %.4g%s%s "
-                   "only with dt below about %.1g%s%s, as shorter runs show%s.",
-                   r->integrator, gains, 100 * target, p->t_end, gap, unit,
-                   found.dt, gap, unit,
+                   "%s%s would keep its error below %g %% until t = %.4g%s "
+                   "only with dt below about %.1g%s, as shorter runs show%s.",
+                   r->integrator, gains, 100 * target, p->t_end, p->unit,
+                   found.dt, p->unit,
                    loses ? "; or take a symplectic scheme" : "");
     else if (found.dt > 0)
         list_print(words,
                    "To keep the energy error of %s below %g %% until t = "
-                   "%.4g%s%s take dt = %.2g%s%s%s.",
-                   r->integrator, 100 * target, p->t_end, gap, unit, found.dt,
-                   gap, unit, other);
+                   "%.4g%s take dt = %.2g%s%s.",
+                   r->integrator, 100 * target, p->t_end, p->unit, found.dt,
+                   p->unit, other);
 }
 
 void suggested_step_words(const plan *p, const row rows[], size_t count,
