@@ -81,7 +81,7 @@ EXTRA_DIST += doc/nevh.h2m doc/nevh.3.head doc/reference.awk doc/figures.sh doc/
 # Worksheets: every number is measured again.
 EXTRA_DIST += doc/sheets/sheets.texi doc/sheets/answers.texi doc/sheets/numbers.texi \
 	doc/sheets/numbers.list \
-	doc/sheets/quartic.nevh doc/sheets/sheets.sh
+	doc/sheets/quartic.nevh doc/sheets/schemes.nevh doc/sheets/sheets.sh
 sheets_html = doc/nevh-sheets.html doc/nevh-answers.html
 CLEANFILES += $(sheets_html) doc/nevh-sheets.pdf doc/nevh-answers.pdf
 run_sheets = $(SHELL) $(srcdir)/doc/sheets/sheets.sh $(srcdir) \
@@ -95,7 +95,7 @@ sheets: all $(sheets_html)
 	  done; \
 	else echo "There is no TeX: the sheets are $(sheets_html) alone."; fi
 sheet_to_html = $(MKDIR_P) doc && $(MAKEINFO) --html --no-split -I $(srcdir)/doc/sheets -o $@
-doc/nevh-sheets.html: doc/sheets/sheets.texi doc/sheets/quartic.nevh
+doc/nevh-sheets.html: doc/sheets/sheets.texi doc/sheets/quartic.nevh doc/sheets/schemes.nevh
 	$(AM_V_GEN)$(sheet_to_html) $(srcdir)/doc/sheets/sheets.texi
 doc/nevh-answers.html: doc/sheets/answers.texi doc/sheets/numbers.texi
 	$(AM_V_GEN)$(sheet_to_html) $(srcdir)/doc/sheets/answers.texi

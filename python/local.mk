@@ -1,12 +1,13 @@
 # The package for Python over the shared library, which it finds from where it is
 # installed.  make install pythondir=DIR puts it elsewhere.
 pythondir = $(pkgdatadir)/python
-dist_python_DATA = python/who-keeps-the-energy.ipynb python/your-own-integrator.ipynb
+dist_python_DATA = python/who-keeps-the-energy.ipynb
 python_sheetsdir = $(pythondir)/sheets
 dist_python_sheets_DATA = python/sheets/sheet-1.ipynb python/sheets/sheet-2.ipynb \
 	python/sheets/sheet-3.ipynb python/sheets/sheet-4.ipynb \
 	python/sheets/sheet-5.ipynb python/sheets/sheet-6.ipynb \
-	python/sheets/sheet-7.ipynb python/sheets/sheet-8.ipynb
+	python/sheets/sheet-7.ipynb python/sheets/sheet-8.ipynb \
+	python/sheets/sheet-9.ipynb
 python_packagedir = $(pythondir)/nevh
 dist_python_package_DATA = $(python_package)
 python_package = \

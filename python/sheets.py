@@ -49,7 +49,10 @@ def folded(call):
 
 
 def calls(example):
-    """The commands of an example, each as a call that a notebook shows."""
+    """The cells of an example: each command as a call that a notebook shows, or what is
+    Python as it stands."""
+    if not example.strip().startswith("nevh "):
+        return [re.sub(r"@([@{}])", r"\1", example).strip()]
     lines = re.sub(r"\\\n\s*", "", example).strip().splitlines()
     made = [folded(call_of(shlex.split(line)[1:], *_commands._list(), _commands._here))
             for line in lines if line.startswith("nevh ")]

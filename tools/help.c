@@ -192,7 +192,58 @@ static int print_json(const command *c) {
     return TOOL_OK;
 }
 
+/* Sections of own integrators, and lines to paste into a shell. */
+static const char own_integrators[] =
+    "\n"
+    "  kick, drift     weights of p -= w h dV/dq and q += w h dT/dp, in "
+    "turn;\n"
+    "                  first = drift begins with the other\n"
+    "  a, b            a Butcher table, rows between ;  explicit or "
+    "implicit\n"
+    "  compose         NAME: weights.  Steps of another, of parts of dt\n"
+    "\n"
+    "Weights are formulas of numbers and parameters, and add up to 1.\n"
+    "nevh check prints the order, by algebra, and the condition of the "
+    "next one\n"
+    "that fails.  An example to paste:\n"
+    "\n"
+    "cat >mine.nevh <<'END'\n"
+    "[parameters]\n"
+    "w = 1/(2 - 2^(1/3))\n"
+    "[coordinates]\n"
+    "x = 1\n"
+    "[effects]\n"
+    "T = p_x^2/2\n"
+    "V = x^4/4\n"
+    "[integrator leap]\n"
+    "kick = 1/2, 1/2\n"
+    "drift = 1\n"
+    "[integrator triple]\n"
+    "compose = leap: w, 1 - 2*w, w\n"
+    "[integrator ralston-of-mine]\n"
+    "a = 0, 0 ; 2/3, 0\n"
+    "b = 1/4, 3/4\n"
+    "[run]\n"
+    "dt = 0.1, 0.05\n"
+    "t_end = 50\n"
+    "integrators = leap, triple, ralston-of-mine, rk4\n"
+    "END\n"
+    "nevh check mine.nevh\n"
+    "nevh compare mine.nevh\n"
+    "nevh check mine.nevh --set w=1.35\n";
+
+static int print_integrators(void) {
+    help_print(stdout, 0, 0,
+               "nevh list integrators shows those that ship.  A scene has its "
+               "own by their numbers, in sections [integrator NAME], and NAME "
+               "then stands wherever an integrator does.  One section is");
+    fputs(own_integrators, stdout);
+    return TOOL_OK;
+}
+
 int help_on(const options *o, const char *name) {
+    if (name && strcmp(name, "integrators") == 0 && o->format == FORMAT_TABLE)
+        return print_integrators();
     const command *c = name ? command_find(name) : NULL;
     if (name && !c)
         return TOOL_USAGE;
@@ -214,9 +265,10 @@ static int help(const options *o) {
 const command help_command = {
     .name = "help",
     .operand = "COMMAND",
-    .help = "what a command does, and its options",
+    .help = "what a command does, and its options; nevh help integrators: "
+            "integrators of your own",
     .examples = "help compare\n"
-                "help --format json",
+                "help integrators",
     .options = "format",
     .run = help,
 };

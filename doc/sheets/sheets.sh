@@ -12,7 +12,7 @@ work=${TMPDIR:-/tmp}/sheets.$$
 trap 'rm -rf $work' EXIT
 trap 'exit 1' HUP INT TERM
 mkdir $work && cd $work || exit 1
-cp "$sheets/quartic.nevh" .
+cp "$sheets"/*.nevh .
 status=0
 
 nevh() { "$nevh" "$@"; }

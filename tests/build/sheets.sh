@@ -18,7 +18,7 @@ if command -v texi2pdf >/dev/null 2>&1 && command -v pdftex >/dev/null 2>&1; the
         grep -A 1 Overfull $work/$name.log && exit 1
     done
     # A title, and a page a sheet: each can be handed out.
-    grep -q 'Output written on sheets.pdf (9 pages' $work/sheets.log ||
+    grep -q 'Output written on sheets.pdf (10 pages' $work/sheets.log ||
         { grep 'Output written' $work/sheets.log; exit 1; }
 fi
 

@@ -182,7 +182,7 @@ def test_worksheets():
     import sheets
     texi = os.path.join(sources, "doc/sheets/sheets.texi")
     sheets.main(texi, "sheets")
-    for k in range(1, 9):
+    for k in range(1, 10):
         name = "sheets/sheet-%d.ipynb" % k
         with open(os.path.join(sources, "python", name), encoding="utf-8") as kept:
             with open(name, encoding="utf-8") as made:

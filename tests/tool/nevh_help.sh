@@ -46,6 +46,16 @@ for one in $commands; do
         test $code = 0 || fails "exit status $code of the example $example"
     done <$work/examples
 done
+# The topic has lines to paste, which run.
+exits 0 help integrators
+narrow
+sed -n '/^cat >mine.nevh/,$p' $work/out >$work/pasted
+(cd $work && nevh() { NEVH_SCENES=$scenes "$absolute" "$@"; } && . ./pasted) >$work/out 2>$work/err ||
+    fails "the lines of the topic fail"
+has '^  triple: order 4, symmetric, symplectic'
+has '^  triple: order 2, symmetric, symplectic'
+has '^ ralston-of-mine  *2  no '
+exits 2 help integrators --format json
 exits 0 help run
 has '^  --samples N '
 lacks '--impact'
