@@ -167,7 +167,6 @@ libnevh_core_la_SOURCES = \
 	lib/native/prelude_text.c \
 	lib/native/steps_text.c \
 	lib/native/splitting_text.c \
-	lib/native/splitting_groups.c \
 	lib/native/vector_text_private.h \
 	lib/native/vector_text.c \
 	lib/native/runge_kutta_text.c \
@@ -329,6 +328,12 @@ step_texts = integrators/kernels/splitting_step.h \
 	lib/native/steps/implicit_orbit.h \
 	lib/native/steps/implicit_lanes.h \
 	lib/native/steps/entry.h \
+	lib/native/steps/runge_kutta_driver.h \
+	lib/native/steps/nystrom_driver.h \
+	lib/native/steps/splitting_first.h \
+	lib/native/steps/splitting_whole.h \
+	lib/native/steps/splitting_parts.h \
+	lib/native/steps/splitting_groups.h \
 	lib/native/steps/tao_driver.h \
 	lib/native/steps/block_driver.h \
 	lib/native/steps/long_driver.h \

@@ -65,9 +65,6 @@ typedef struct nevh__native {
 /* Text of steps, and of the slopes before them: of a splitting, and of an
    explicit Runge-Kutta method. */
 bool nevh__write_splitting(nevh__writer *, nevh_work *);
-/* The same of states that are long, and w->takes_steps; false: terms read what
-   is far, and nothing is written. */
-bool nevh__write_splitting_groups(nevh__writer *, nevh_work *);
 bool nevh__write_runge_kutta(nevh__writer *, nevh_work *);
 bool nevh__write_nystrom(nevh__writer *, nevh_work *);
 bool nevh__write_stages(nevh__writer *, nevh_work *);
@@ -84,6 +81,10 @@ bool nevh__write_adaptive_verlet(nevh__writer *, nevh_work *);
    to; ahead: the last stage's slope.  For readers both are without N. */
 void nevh__write_adaptive(nevh__writer *, const nevh_work *,
                           const nevh__adaptive_rule *);
+/* Text of steps, or of steps under a tolerance, by the header of a method of so many
+   stages, which keeps no slope. */
+void nevh__write_stage_driver(nevh__writer *, const nevh_work *,
+                              const char *const header[], size_t stages);
 /* True if steps adapt to a tolerance. */
 static inline bool nevh__adapts(const nevh_work *w) {
     return w->integrator->adaptive && w->options->tolerance > 0;

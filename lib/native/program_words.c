@@ -21,8 +21,8 @@ static bool has_word(const char *line, const char *word, size_t length) {
     return false;
 }
 
-/* A line of text before and after names become shorter, and the parentheses that
-   are open: what follows them stands below them. */
+/* A line of text before and after names become shorter, and the parentheses and braces
+   that are open: what follows them stands below them. */
 enum { MOST_OPEN = 32 };
 typedef struct {
     const char *from;
@@ -56,13 +56,13 @@ static void take_character(renaming *r) {
     else if (c == '/' && next == '*')
         r->comment = true;
     *r->to++ = *r->from++;
-    if (c == '(' && !r->text && !r->comment) {
+    if ((c == '(' || c == '{') && !r->text && !r->comment) {
         if (r->depth < MOST_OPEN) {
             r->open[r->depth].from = (size_t)(r->from - r->from_line);
             r->open[r->depth].to = (size_t)(r->to - r->to_line);
         }
         r->depth++;
-    } else if (c == ')' && !r->text && !r->comment && r->depth)
+    } else if ((c == ')' || c == '}') && !r->text && !r->comment && r->depth)
         r->depth--;
     else if (c == '\n')
         take_line(r);

@@ -1,6 +1,7 @@
 /* nevh: what the texts of all families of steps share: what the kernels' texts
    need, and the function that takes steps.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "kernels/runge_kutta_private.h"
 #include "native/native_private.h"
 #include "native/slope_private.h"
 #include <string.h>
@@ -115,6 +116,8 @@ static void write_compiled_needs(nevh__writer *w, size_t lanes, size_t group) {
 static void write_program_needs(nevh__writer *w, size_t n, bool finite,
                                 bool sums) {
     nevh__write(w, "enum { DOF = %zu };\n", n);
+    if (w->loops)
+        nevh__write_form(w, "NEVH__LOOPS");
     if (finite)
         nevh__write_form(w, "NEVH__FINITE");
     if (sums || w->stages)
@@ -144,16 +147,6 @@ void nevh__write_needs(nevh__writer *w, size_t n, bool finite, bool sums) {
                     n, group, w->width, lanes);
 }
 
-void nevh__write_rows(nevh__writer *w, const char *name, size_t rows) {
-    if (w->loops && !w->readable) {
-        nevh__write(w, "    nevh__number *%s = room + %zu * (size_t)DOF;\n",
-                    name, w->rows);
-        w->rows += rows;
-    } else
-        nevh__write(w, "    %snevh__number %s[%zu * DOF];\n",
-                    w->loops ? "static " : "", name, rows);
-}
-
 void nevh__write_table(nevh__writer *w) {
     if (w->readable)
         return;
@@ -163,21 +156,19 @@ void nevh__write_table(nevh__writer *w) {
         nevh__write(w, "#define TABLE(b) N\n");
 }
 
-static void write_long_driver(nevh__writer *w) {
+static void write_long_driver(nevh__writer *w, size_t rows) {
     if (w->takes_steps)
         nevh__write_form(w, "NEVH__TAKES_STEPS");
-    nevh__write(w, "enum { ROWS_BEFORE = %zu };\n", w->rows);
-    w->rows += 5;
+    nevh__write(w, "enum { ROWS_BEFORE = %zu };\n", rows);
+    w->rows = rows + 5;
     nevh__write_lines(w, nevh__long_driver_text);
 }
 
-void nevh__write_driver(nevh__writer *w, bool keeps) {
+void nevh__write_driver(nevh__writer *w, bool keeps, size_t rows) {
     if (w->readable && keeps)
         nevh__write_form(w, "NEVH__KEEPS");
-    if (w->readable && w->loops)
-        nevh__write_form(w, "NEVH__LOOPS");
     if (w->loops && !w->readable)
-        write_long_driver(w);
+        write_long_driver(w, rows);
     else {
         nevh__write_table(w);
         nevh__write_lines(w, nevh__block_driver_text);
@@ -217,22 +208,35 @@ void nevh__write_sums(nevh__writer *w, const nevh__sums_text *sums) {
     nevh__write(w, "};\n");
 }
 
-void nevh__write_step_head(nevh__writer *w) {
-    nevh__write(w, "%s",
-                w->readable
-                    ? "/* A step of the state y, q and then p.  Returns 0 if "
-                      "all is finite. */\n"
-                      "static double take_step(double t, double h, double *y, "
-                      "double *lost) "
-                    : "INLINE nevh__number take_step(const double *N, double "
-                      "*W, double *T, size_t operations, double t, double h, "
-                      "nevh__number *y, nevh__number *lost, nevh__number "
-                      "*kept, nevh__number *room) ");
-}
-
-void nevh__write_unkept(nevh__writer *w) {
+static void write_unkept(nevh__writer *w) {
     if (!w->readable)
         nevh__write(w, "enum { KEPT = 0 };\n"
                        "#define take_first(N, T, t, h, y, lost, kept, room) "
                        "((nevh__number){0})\n");
+}
+
+/* The stages of compiled steps are written one by one. */
+static void write_stages(nevh__writer *w, size_t first, size_t stages) {
+    nevh__write(w, "enum { STAGES = %zu };\n", stages);
+    if (w->readable)
+        return;
+    nevh__write(w, "#define NEVH__EACH_STAGE(take)");
+    for (size_t i = first; i < stages; i++)
+        nevh__write(w, " take(%zu)", i);
+    nevh__write(w, "\n");
+}
+
+void nevh__write_stage_driver(nevh__writer *w, const nevh_work *work,
+                              const char *const header[], size_t stages) {
+    bool adapts = nevh__adapts(work);
+    if (adapts)
+        nevh__write_form(w, "NEVH__ADAPTS");
+    write_stages(w, adapts, stages);
+    nevh__write_lines(w, header);
+    if (adapts) {
+        nevh__write_adaptive(w, work, nevh__adaptive_rule_of(work));
+        return;
+    }
+    write_unkept(w);
+    nevh__write_driver(w, false, 4 + 2 * stages);
 }

@@ -18,6 +18,6 @@ bool nevh__write_tao(nevh__writer *w, nevh_work *work) {
     nevh__write(w, "\n");
     nevh__write_lines(w, nevh__tao_step_text);
     nevh__write_lines(w, nevh__tao_driver_text);
-    nevh__write_driver(w, true);
+    nevh__write_driver(w, true, 0);
     return true;
 }

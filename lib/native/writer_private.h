@@ -129,6 +129,12 @@ extern const char *const nevh__implicit_orbit_text[];
 extern const char *const nevh__implicit_lanes_text[];
 extern const char *const nevh__tao_driver_text[];
 extern const char *const nevh__entry_text[];
+extern const char *const nevh__runge_kutta_driver_text[];
+extern const char *const nevh__nystrom_driver_text[];
+extern const char *const nevh__splitting_first_text[];
+extern const char *const nevh__splitting_whole_text[];
+extern const char *const nevh__splitting_parts_text[];
+extern const char *const nevh__splitting_groups_text[];
 extern const char *const nevh__block_driver_text[];
 extern const char *const nevh__long_driver_text[];
 extern const char *const nevh__compiled_needs_text[];
@@ -192,13 +198,6 @@ typedef struct {
 void nevh__write_sum(nevh__writer *, nevh__sums_text *, const double weights[],
                      size_t count, const char *apart);
 void nevh__write_sums(nevh__writer *, const nevh__sums_text *);
-/* An array of a step's, of so many times DOF numbers: on the stack, or where a
-   state is long in the room that the step is handed. */
-void nevh__write_rows(nevh__writer *, const char *name, size_t rows);
-/* take_step up to its brace, of a family that keeps no slope; and what tells
-   that it keeps none. */
-void nevh__write_step_head(nevh__writer *);
-void nevh__write_unkept(nevh__writer *);
 /* The function that takes steps, of
        take_step(N, W, T, operations, t, h, y, lost, kept)
    which returns 0 if all is well; for readers take_step(t, h, y, lost)
@@ -207,8 +206,9 @@ void nevh__write_unkept(nevh__writer *);
        take_steps(N, W, T, operations, t0, h, from, steps, y, lost, kept, room,
                   done)
    which adds to `done` how many steps are fine, and returns whether it is all
-   that were taken, of up to `steps`. */
-void nevh__write_driver(nevh__writer *, bool keeps);
+   that were taken, of up to `steps`.
+   rows  of DOF numbers that a step has in its room where a state is long */
+void nevh__write_driver(nevh__writer *, bool keeps, size_t rows);
 /* TABLE(b), the numbers of a vector of orbits; none is added later. */
 void nevh__write_table(nevh__writer *);
 /* Writes that function by the text's own function advance. */

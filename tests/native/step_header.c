@@ -1,8 +1,15 @@
 /* nevh tests: a header of lib/native/steps as it stands, with what it needs of a
    scene.  STEPS: its name; FAMILY_*: whose.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#if defined FAMILY_DRIVER && !defined NEVH__FOR_READERS
-/* Of what formulas have before them. */
+#if defined FAMILY_SPLITTING || defined FAMILY_RUNGE_KUTTA ||                  \
+    defined FAMILY_NYSTROM
+#define STANDS_ALONE
+#endif
+#if (defined FAMILY_DRIVER || defined STANDS_ALONE) &&                         \
+    !defined NEVH__FOR_READERS
+/* What formulas have before them, in place of what the library has. */
+#define NEVH_VECTOR_PRIVATE_H
+#define NEVH_SIMD_H
 typedef __SIZE_TYPE__ size;
 #define INLINE static inline
 #define CONST  __attribute__((const))
@@ -16,7 +23,14 @@ extern double fabs(double) CONST;
 #include <stddef.h>
 #include <string.h>
 
-#ifdef FAMILY_DRIVER
+#if defined FAMILY_DRIVER || defined STANDS_ALONE
+#define NEVH_VECTOR_PRIVATE_H
+#define NEVH_SIMD_H
+#define NEVH__COMPILED(...)
+#define NEVH__INLINE static
+#define NEVH__KNOWN_COUNT
+#define NEVH_UNROLL
+typedef double nevh__number;
 #include "native/steps/program_needs.h"
 #else
 #include "system/vector_private.h"
@@ -40,7 +54,7 @@ typedef nevh__number slope_number;
 #endif
 #endif
 
-#ifdef FAMILY_DRIVER
+#if defined FAMILY_DRIVER || defined STANDS_ALONE
 #ifdef NEVH__WIDE
 enum { LANES = 8 };
 #else
@@ -52,10 +66,12 @@ enum {
     DOF = ONE * GROUP,
     WIDTH = LANES,
     BLOCKS = 1,
-    KEPT = DOF,
     COUNT = DOF * LANES,
     ROWS_BEFORE = 3
 };
+#endif
+#ifdef FAMILY_DRIVER
+enum { KEPT = DOF };
 #ifdef NEVH__FOR_READERS
 static inline double take_step(double t, double h, double *y, double *lost,
                                double *kept) {
@@ -84,7 +100,7 @@ static inline nevh__number take_first(const double *N, const double *T,
     return kept[0] - kept[0];
 }
 #endif
-#else
+#elif !defined STANDS_ALONE
 enum { DOF = 2 };
 
 /* H = (p^2 + q^2)/2. */
@@ -105,6 +121,92 @@ drift_slope(NEVH__COMPILED(const double *N, ) slope_number t,
     return kick_slope(NEVH__COMPILED(N, ) t, p, q, slope);
 }
 
+#endif
+
+#ifdef STANDS_ALONE
+/* H = (p^2 + q^2)/2: as above, of one orbit, of several, and of a state that is
+   long. */
+#ifdef NEVH__FOR_READERS
+#define SLOPE(name, from)                                                      \
+    static double name(double t, const double *q, const double *p,             \
+                       double *slope) {                                        \
+        (void)q, (void)p;                                                      \
+        for (size_t k = 0; k < DOF; k++)                                       \
+            slope[k] = from[k];                                                \
+        return t - t;                                                          \
+    }
+#elif defined NEVH__LOOPS
+#define SLOPE(name, from)                                                      \
+    static double name(const double *N, double t, const wide *q,               \
+                       const wide *p, wide *slope, size_t first,               \
+                       size_t past) {                                          \
+        (void)N, (void)q, (void)p;                                             \
+        for (size_t k = first / 8; k < past / 8; k++)                          \
+            slope[k] = from[k];                                                \
+        return t - t;                                                          \
+    }
+#else
+#define SLOPE(name, from)                                                      \
+    static nevh__number name(const double *N, double t, const nevh__number *q, \
+                             const nevh__number *p, nevh__number *slope) {     \
+        (void)N, (void)q, (void)p;                                             \
+        for (size_t k = 0; k < ONE; k++)                                       \
+            slope[k] = from[k] + t;                                            \
+        return q[0] - q[0];                                                    \
+    }
+#endif
+SLOPE(kick_slope, q)
+SLOPE(drift_slope, p)
+#endif
+
+#ifdef FAMILY_SPLITTING
+enum { OPERATIONS = 3, KICKS_FIRST = true, KEEPS = true };
+#ifdef NEVH__FOR_READERS
+static double W[OPERATIONS] = {0.5, 1, 0.5}, T[OPERATIONS] = {0, 0.5, 1};
+#elif defined NEVH__LOOPS
+static const size_t lags[] = {1, 2, 3};
+enum {
+    PART = 16,
+    PARTS = 1,
+    GROUPS = 3,
+    AT_ONCE = 2,
+    IN_WORK = 3,
+    WINDOW = DOF,
+    IN_FIRST = 1,
+    LAST_AT = 2,
+    IN_LAST = 1,
+    KICK_REACHES = true,
+    DRIFT_REACHES = false,
+    READS_Q = true,
+    READS_P = true,
+    kick_before = 1,
+    drift_before = 1
+};
+static wide kick_vector(const double *N, double t, const wide *y, size_t k,
+                        wide *before, wide *bad) {
+    (void)N, (void)k;
+    *bad += t - t;
+    *before = *y;
+    return *y;
+}
+#define kick_at      kick_vector
+#define drift_vector kick_vector
+#define drift_at     kick_vector
+#endif
+#ifndef NEVH__FOR_READERS
+#include "native/steps/splitting_first.h"
+#endif
+#endif
+
+#if defined FAMILY_RUNGE_KUTTA || defined FAMILY_NYSTROM
+#include "kernels/stage_sums_private.h"
+enum { STAGES = 2, DIAGONAL = true, MOVES = true };
+static double weights_1[] = {1};
+static size_t offsets_1[] = {0};
+static const nevh__sum sums[STAGES + 4] = {{NULL, 1, weights_1, offsets_1}};
+static const double times[STAGES] = {0, 1};
+static const nevh__number RATES[DOF], AT_REST[DOF], INVERSE[DOF];
+#define NEVH__EACH_STAGE(take) take(0) take(1)
 #endif
 
 #ifdef FAMILY_ADAPTIVE
@@ -171,7 +273,18 @@ static inline double worst_noise(NEVH__COMPILED(const double *N, ) double t,
 #endif
 
 #include STEPS
+#if defined STANDS_ALONE && !defined NEVH__ADAPTS
+#ifndef FAMILY_SPLITTING
+enum { KEPT = DOF };
+#define take_first(N, T, t, h, y, lost, kept, room) ((nevh__number){0})
+#endif
+#if defined NEVH__LOOPS && !defined NEVH__FOR_READERS
+#include "native/steps/long_driver.h"
+#else
+#include "native/steps/block_driver.h"
+#endif
+#endif
 #if !defined NEVH__FOR_READERS && !defined FAMILY_ADAPTIVE_VERLET &&           \
-    !defined FAMILY_DRIVER && !defined FAMILY_TAO
+    !defined FAMILY_DRIVER && !defined FAMILY_TAO && !defined STANDS_ALONE
 #include "native/steps/entry.h"
 #endif

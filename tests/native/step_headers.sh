@@ -43,6 +43,23 @@ for compiler in "$cc" clang; do
         compiles $compiler DRIVER native/steps/block_driver.h $forms
     done
     compiles $compiler DRIVER native/steps/long_driver.h $wide -DNEVH__LOOPS
+    for forms in '' "$wide" "$wide -DNEVH__LOOPS" "-DNEVH__FOR_READERS -DNEVH__KEEPS" \
+        "-DNEVH__FOR_READERS -DNEVH__KEEPS -DNEVH__LOOPS"; do
+        compiles $compiler SPLITTING native/steps/splitting_whole.h -DNEVH__FINITE $forms
+    done
+    for forms in '' -DNEVH__FOR_READERS -DNEVH__ADAPTS \
+        '-DNEVH__ADAPTS -DNEVH__FOR_READERS'; do
+        compiles $compiler NYSTROM native/steps/nystrom_driver.h -DNEVH__SUMS $forms
+        compiles $compiler RUNGE_KUTTA native/steps/runge_kutta_driver.h -DNEVH__SUMS \
+            -DNEVH__FRICTION $forms
+    done
+    for forms in "$wide" "$wide -DNEVH__LOOPS" '-DNEVH__FOR_READERS -DNEVH__LOOPS'; do
+        compiles $compiler RUNGE_KUTTA native/steps/runge_kutta_driver.h -DNEVH__SUMS \
+            -DNEVH__FRICTION $forms
+    done
+    compiles $compiler SPLITTING native/steps/splitting_parts.h $wide -DNEVH__LOOPS
+    compiles $compiler SPLITTING native/steps/splitting_groups.h $wide -DNEVH__LOOPS \
+        -DNEVH__TAKES_STEPS
     compiles $compiler DRIVER native/steps/compiled_needs.h \
         -DNEVH__SIDE_BY_SIDE -DNEVH__STAGES
     for forms in -DNEVH__KEEPS '-DNEVH__KEEPS -DNEVH__LOOPS -DNEVH__FINITE' \

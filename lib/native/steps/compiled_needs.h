@@ -23,6 +23,18 @@ typedef size size_t;
 #define NEVH__EACH(i, lanes, size)                                             \
     NEVH_UNROLL for (size_t i = 0; i < (size); i += (lanes))
 #define NEVH__COMPILED(...) __VA_ARGS__
+/* The first arguments of a step. */
+#define NEVH__TABLES const double *N, double *W, double *T, size_t operations,
+/* Rows of a step: on the stack, or where a state is long in the room that it is
+   handed; and the last arguments of its slopes. */
+#ifdef NEVH__LOOPS
+#define NEVH__ROWS(name, from, rows)                                           \
+    nevh__number *name = room + (from) * (size_t)DOF
+#define NEVH__WHOLE , 0, 8 * DOF
+#else
+#define NEVH__ROWS(name, from, rows) nevh__number name[(rows)*DOF]
+#define NEVH__WHOLE
+#endif
 
 #ifdef NEVH__WIDE
 /* Numbers that are not finite are found once for all blocks. */
