@@ -99,6 +99,18 @@ doc/nevh-sheets.html: doc/sheets/sheets.texi doc/sheets/quartic.nevh doc/sheets/
 	$(AM_V_GEN)$(sheet_to_html) $(srcdir)/doc/sheets/sheets.texi
 doc/nevh-answers.html: doc/sheets/answers.texi doc/sheets/numbers.texi
 	$(AM_V_GEN)$(sheet_to_html) $(srcdir)/doc/sheets/answers.texi
+
+# The manual as pages, with the pictures of its commands: doc/nevh-site/index.html.
+EXTRA_DIST += doc/site/site.sh doc/site/site.css doc/site/search.js doc/site/search.awk \
+	doc/site/pictures.awk doc/site/head.html doc/site/top.html
+site: all $(srcdir)/doc/version.texi
+	MAKEINFO="$(MAKEINFO)" MAKEINFOFLAGS="$(AM_MAKEINFOFLAGS) $(MAKEINFOFLAGS)" \
+	  $(SHELL) $(srcdir)/doc/site/site.sh $(srcdir) tools/nevh$(EXEEXT) doc/nevh-site
+.PHONY: site
+clean-local: clean-site
+clean-site:
+	rm -rf doc/nevh-site
+.PHONY: clean-site
 sheets-numbers: all
 	$(run_sheets) write
 .PHONY: sheets sheets-numbers

@@ -196,6 +196,7 @@ dist_check_SCRIPTS = \
 	tests/build/cplusplus.sh \
 	tests/build/examples.sh \
 	tests/build/sheets.sh \
+	tests/build/site.sh \
 	tests/build/paper.sh \
 	tests/tool/nevh.sh \
 	tests/tool/nevh_scenes.sh \
