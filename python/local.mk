@@ -25,6 +25,7 @@ python_package = \
 	python/nevh/_looks.py \
 	python/nevh/_own.py \
 	python/nevh/_plot.py \
+	python/nevh/_progress.py \
 	python/nevh/_run.py \
 	python/nevh/_scene.py \
 	python/nevh/_solve.py \

@@ -23,6 +23,7 @@ from ._library import _closest, Error, Failed, gradient_names, _lib, _name_list,
 from ._scene import _assign, _is_row, _scene, _starts, _value
 from ._command_line import call_of
 from ._own import Integrator, rows_of_functions
+from ._progress import Progress
 from ._table import Table, Text
 
 # Options that have other names here, or none.
@@ -56,7 +57,8 @@ def _run(arguments):
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                encoding="utf-8", errors="replace")
     try:
-        out, said = process.communicate()
+        with Progress(arguments[0]) as progress:
+            out, said = _heard(process, progress)
     except BaseException:
         process.send_signal(signal.SIGINT)
         try:
@@ -66,6 +68,15 @@ def _run(arguments):
             process.wait()
         raise
     return out, said.strip(), process.returncode
+
+
+def _heard(process, progress):
+    """What a process prints until it ends."""
+    while True:
+        try:
+            return process.communicate(timeout=0.25 if progress.looks else None)
+        except subprocess.TimeoutExpired:
+            progress.at()
 
 
 @functools.lru_cache(maxsize=None)
@@ -248,16 +259,28 @@ def _measured(name, value):
     return "" if math.isnan(number) else repr(number)
 
 
+def _check_formula(of, given, what):
+    """Refuses a formula without what a scene would say: where it starts and ends, and
+    the time step."""
+    takes = of["options"]
+    needs = [name for name, option, needless in (
+        ("y0", "start", "vary"), ("t_end", "t-end", "at"), ("dt", "dt", None))
+        if option in takes and name not in given and needless not in given and (
+            option, of["name"]) != ("dt", "page")]
+    if needs:
+        raise Refused("%s needs %s" % (what, " and ".join(needs)))
+
+
 def _scene_words(of, source, given, folder, coordinates, sections=""):
     """A scene as the command takes it: a file, and options for what is changed."""
+    if callable(source):  # refused before it is traced
+        _check_formula(of, given, "a function")
     made = _scene(source, given.pop("parameters", None), coordinates,
                   given.pop("with_effects", None) or (),
                   given.pop("without_effects", None) or (), given.get("y0"))
+    if made.is_formula:
+        _check_formula(of, given, "a formula")
     y0 = given.pop("y0", None)
-    if made.is_formula and "start" in of["options"]:
-        ends = "t-end" in of["options"] and "at" not in given
-        if y0 is None and "vary" not in given or ends and "t_end" not in given:
-            raise Refused("a formula needs y0" + " and t_end" * ends)
     if callable(source):  # its scene starts there
         y0 = None
     words, path = list(made._changes), made.path

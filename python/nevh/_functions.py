@@ -93,6 +93,8 @@ class _Subject:
     def __init__(self, H, start=None, parameters=None, args=(), coordinates=None,
                  with_effects=(), without_effects=(), params=None):
         self.scene = self.own = None
+        self._made_of = (H, start, parameters, args, coordinates, with_effects,
+                         without_effects, params)
         self.calls_python = False
         self.trap = _Trap()
         address = None if isinstance(H, (Scene, str, os.PathLike)) else _address(H)
@@ -137,6 +139,9 @@ class _Subject:
         except Untraceable as error:
             _traced.warn(error, calls, t0, y0)
         return self.scene is not None
+
+    def __reduce__(self):  # to copy and to pickle it
+        return _Subject, (self.scene,) if self.scene else self._made_of
 
     def __del__(self):
         if getattr(self, "own", None):

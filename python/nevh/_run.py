@@ -15,6 +15,7 @@ from ._library import (_check, _gradient, _integrator, _JudgedRun, _lib, _observ
                        _Observer, _Options, Refused, _STOPPED, verdicts)
 from ._arrays import _cut, np, _numbers, _positive, Result, _table
 from ._functions import _set_gradient_steps
+from ._progress import Progress
 
 
 class _Plan:
@@ -22,6 +23,7 @@ class _Plan:
 
     def __init__(self, subject, name, gradient, y, t0, tolerance, gradient_step):
         self.subject = subject
+        self._made_of = (subject, name, gradient, list(y[0]), t0, tolerance, gradient_step)
         integrator, transformed = _integrator(name)
         o = self.options = _Options(t=t0, q=y[1], p=y[1] + 8 * subject.n,
                                     tolerance=tolerance)
@@ -59,8 +61,15 @@ class _Plan:
         if hasattr(self, "stepper"):
             _lib.stepper_free(self.stepper)
 
+    def __reduce__(self):  # to copy and to pickle it
+        return _plan_again, self._made_of
+
     def check(self, status):
         _check(status, _lib.stepper_message(self.stepper))
+
+
+def _plan_again(subject, name, gradient, y, t0, tolerance, gradient_step):
+    return _Plan(subject, name, gradient, _numbers(y), t0, tolerance, gradient_step)
 
 
 class _Interrupt:
@@ -82,16 +91,20 @@ class _Interrupt:
     def __exit__(self, *_):
         if self.before is not None:
             signal.signal(signal.SIGINT, self.before)
+            self.before = None
 
 
-def _watcher(observe, n, trap, interrupt):
-    """An observer that calls `observe`, and looks for the interrupt key."""
+def _watcher(observe, n, trap, interrupt, progress=None):
+    """An observer that calls `observe`, looks for the interrupt key, and tells
+    `progress` the time."""
     view = c.c_double * n
 
     def watch(_, step, t, q, p):
         try:
             if interrupt.pressed:
                 raise KeyboardInterrupt
+            if progress is not None:
+                progress(t)
             if observe is None:
                 return 0
             y = list(view.from_address(q)) + list(view.from_address(p))
@@ -181,57 +194,74 @@ def _settler(plan, t0, h, t_end, start, report):
     return settle
 
 
-def _run_plan(plan, t0, t_end, h, times, y, observe, every):
-    """The orbit as a Result, and the status of the library."""
+def _run_watched(plan, t0, t_end, h, times, states_at, y, observe, every, interrupt):
+    """Runs a plan from y, which moves with it; the status, and how many states are kept."""
     subject, n = plan.subject, plan.subject.n
-    start = list(y[0])
     times, times_at = _numbers(times)
-    states, states_at = _table(2 * n, len(times))
-    kept, trap = c.c_size_t(), subject.trap
-    watched = [(_lib.address("energy_observe"), plan.energy, 1)]
-    watched += _stops(subject.scene)
-    with _Interrupt() as interrupt:
-        watch = _watcher(observe, n, trap, interrupt)
-        watched.append((c.cast(watch, c.c_void_p).value, None, every))
-        observers = (_Observer * len(watched))(*watched)
-        status = _lib.run_at(plan.stepper, t0, h, t_end, times_at, len(times),
-                             states_at, c.byref(kept), y[1], y[1] + 8 * n, observers,
-                             len(watched))
-    report = _lib.energy_result(plan.energy, 0)
-    counts = _lib.stepper_counts(plan.stepper)
+    kept = c.c_size_t()
+    with Progress("solve") as progress, interrupt or _Interrupt() as interrupt:
+        watch = _watcher(observe, n, subject.trap, interrupt,
+                         (lambda t: progress.at((t - t0) / (t_end - t0)))
+                         if progress.looks else None)
+        watched = [(_lib.address("energy_observe"), plan.energy, 1),
+                   *_stops(subject.scene), (c.cast(watch, c.c_void_p).value, None, every)]
+        status = _lib.run_at(plan.stepper, t0, h, t_end, times_at, len(times), states_at,
+                             c.byref(kept), y[1], y[1] + 8 * n,
+                             (_Observer * len(watched))(*watched), len(watched))
+    return status, kept.value
+
+
+def _end_of(plan, status):
+    """The status of a run, and what there is to say about its end."""
+    scene = plan.subject.scene
     message = _lib.stepper_message(plan.stepper).decode()
     if status == _STOPPED and _lib.energy_status(plan.energy):
         status = _lib.energy_status(plan.energy)
         message = _lib.energy_message(plan.energy).decode()
-    if status == _STOPPED and subject.scene and _lib.scene_stops(subject.scene._made):
-        message += ": " + _lib.scene_stop_text(subject.scene._made).decode()
-    reached = t_end if not status else (
-        _lib.stepper_time(plan.stepper) if _lib.stepper_taken(plan.stepper) else t0)
+    if status == _STOPPED and scene and _lib.scene_stops(scene._made):
+        message += ": " + _lib.scene_stop_text(scene._made).decode()
     effect = c.c_char_p()
     passed = _lib.energy_passed(plan.energy, c.byref(effect))
     if not math.isnan(passed) and status in (0, _STOPPED):
         status = -1
         message = (f"A step before t = {passed:.6g} passes a pole of "
                    f"{effect.value.decode()}: what follows is not the orbit of H.")
-    count = kept.value
+    return status, message or "The end of t_span was reached."
+
+
+def _run_plan(plan, t0, t_end, h, times, y, observe, every, interrupt=None):
+    """The orbit as a Result, and the status of the library."""
+    n, start = plan.subject.n, list(y[0])
+    states, states_at = _table(2 * n, len(times))
+    ran, count = _run_watched(plan, t0, t_end, h, times, states_at, y, observe, every,
+                              interrupt)
+    status, message = _end_of(plan, ran)
+    report = _lib.energy_result(plan.energy, 0)
+    counts = _lib.stepper_counts(plan.stepper)
     result = Result(
         t=times[:count] if count < len(times) else times,
         y=_cut(states, 2 * n, len(times), count),
         nfev=counts.gradients, hamiltonian_evals=counts.hamiltonians,
         status=0 if not status else 1 if status == _STOPPED else -1,
-        message=message or "The end of t_span was reached.",
-        success=status in (0, _STOPPED), energy_error=report.max,
-        energy_drift=report.drift,
-        energy_scale=report.scale, t_reached=reached,
+        message=message, success=status in (0, _STOPPED), energy_error=report.max,
+        energy_drift=report.drift, energy_scale=report.scale,
+        t_reached=t_end if not ran else _lib.stepper_time(plan.stepper)
+        if _lib.stepper_taken(plan.stepper) else t0,
         y_reached=y[0].copy() if np is not None else list(y[0]), sol=None)
+    _judge(result, plan, report, status, (t0, h, t_end, start))
+    return status, result
+
+
+def _judge(result, plan, report, status, run):
+    """Adds the verdict to a result, or how it is found; warns of large errors."""
+    t0, h, t_end, start = run
     verdict = verdicts[report.verdict]
     if verdict == "unstable" and not status and report.max > 1:
         warnings.warn(
             f"The energy changes by up to {report.max:.2g} times its scale: these "
             "steps are no measure of the orbit; take a smaller dt, or another "
-            "integrator.", RuntimeWarning, stacklevel=4)
-    if verdict == "undecided" and not status and not subject.calls_python:
+            "integrator.", RuntimeWarning, stacklevel=5)
+    if verdict == "undecided" and not status and not plan.subject.calls_python:
         result._settle = _settler(plan, t0, h, t_end, start, report)
     else:
         result["verdict"] = verdict
-    return status, result

@@ -17,7 +17,9 @@ from ._scene import Scene
 from ._functions import _Subject
 from ._events import DenseOutput, Events
 from ._own import Integrator, run_steps
-from ._run import _choose, _Plan, _run_plan, _steps, _takes_none, _times_of_steps
+from ._run import (_choose, _Interrupt, _Plan, _run_plan, _steps, _takes_none,
+                   _times_of_steps)
+from ._progress import Progress
 
 
 def _span(scene, t_span):
@@ -70,10 +72,10 @@ def _finite_start(scene, y0):
     return y
 
 
-def _of_scene(scene, method, dt, rtol, gradient):
-    """Method, dt, rtol and gradient, where not given those of the scene."""
+def _of_scene(scene, method, dt, tolerances, gradient):
+    """Method, dt, (rtol, atol) and gradient, where not given those of the scene."""
     if not scene:
-        return method, dt, rtol, gradient
+        return method, dt, tolerances, gradient
     settings = scene._settings()
     if method is None and settings.integrators:
         method = settings.integrator[0].decode()
@@ -81,9 +83,9 @@ def _of_scene(scene, method, dt, rtol, gradient):
         _lib.integrator_adaptive(_integrator(method)[0])
     if dt is None and settings.dts and not adapts:
         dt = settings.dt[0]
-    if rtol is None and settings.tolerances and adapts and not scene.is_formula:
-        rtol = settings.tolerance[0]
-    return method, dt, rtol, gradient or settings.gradient[0].decode()
+    if tolerances[0] is None and settings.tolerances and adapts and not scene.is_formula:
+        tolerances = settings.tolerance[0], tolerances[1]
+    return method, dt, tolerances, gradient or settings.gradient[0].decode()
 
 
 def _at_most(dt, max_step, tolerance):
@@ -164,6 +166,136 @@ def _find(result, plan, h, t_eval, events, dense_output):
     result.update(t=times, y=states, sol=sol if dense_output else None)
 
 
+class _Problem:
+    """What solve is asked for, checked once; orbit(y0) is one answer."""
+
+    def __init__(self, H, t_span, y0, method, *, dt, rtol, atol, t_eval, gradient,
+                 gradient_step, parameters, args, coordinates, with_effects,
+                 without_effects, params, observe, every, events, dense_output, max_step,
+                 check):
+        if method is not None and not isinstance(method, (type, Integrator)):
+            _text("method", method)
+        if observe is not None and not callable(observe):
+            raise TypeError("observe is a function, not %r" % type(observe).__name__)
+        self.events, self.observe, self.check = Events(events, args), observe, check
+        self.every, self.dense_output = _whole_from_one("every", every), dense_output
+        self.times, self.max_step = t_eval, max_step
+        if hasattr(H, "_problem"):  # a HGrad
+            H, gradient, gradient_step, given = H._problem(gradient, gradient_step)
+            parameters, args, coordinates, with_effects, without_effects, params = given
+        is_text = isinstance(H, (Scene, str, os.PathLike))
+        self.subject = _Subject(H, None if is_text else _start_of_function(t_span, y0),
+                                parameters, args, coordinates, with_effects,
+                                without_effects, params)
+        scene = self.scene = self.subject.scene
+        if args and not self.events and is_text:
+            raise Refused("args are those of a function: give parameters={name: value}")
+        if scene and scene.is_formula and (y0 is None or t_span is None):
+            raise Refused("a formula needs t_span and y0")
+        _finite_start(scene, y0)
+        self.t0, self.t_end = _span(scene, t_span)
+        if not abs(self.t_end - self.t0) < math.inf or self.t_end == self.t0:
+            raise Refused("t_span = %g, %g is no time to go" % (self.t0, self.t_end))
+        if gradient:
+            _gradient(gradient)
+        self.gradient_step = gradient_step
+        self.method, self.dt, self.tolerances, self.gradient = _of_scene(
+            scene, method, dt, (rtol, atol), gradient)
+        self._check_function()
+
+    def _check_function(self):
+        """Refuses what an integrator that is a function does not take."""
+        if getattr(self.method, "step", None) and (
+                self.events or self.dense_output or any(one is not None for one in (
+                    self.observe, self.times, self.max_step, *self.tolerances))):
+            raise Refused("%s is a function: it takes dt, and neither t_eval, observe, "
+                          "events, dense_output, rtol, atol nor max_step"
+                          % self.method.name)
+
+    def shares(self):
+        """Whether orbits from several starts, in several threads, may share it."""
+        return not (self.subject.calls_python or self.observe or
+                    getattr(self.method, "step", None))
+
+    def orbit(self, y0, interrupt=None):
+        """The orbit from y0."""
+        subject, t0, t_end = self.subject, self.t0, self.t_end
+        y = _finite_start(self.scene, y0)
+        if getattr(self.method, "step", None):
+            return _solve_by_function(self.method, subject, y, (t0, t_end), self.dt,
+                                      self.gradient, self.gradient_step, self.check)
+        dt = None if self.dt is None else _positive("dt", self.dt)
+        methods = [self.method] if self.method is not None else _choose(
+            subject, dt, t0, y)
+        dt, tolerance = _steps(methods[0], dt, *self.tolerances, t_end - t0, y[0])
+        dt = _at_most(dt, self.max_step, tolerance)
+        h = dt if t_end > t0 else -dt
+        plan, method, gradient = _first_plan(subject, methods, self.gradient, y, t0,
+                                             tolerance, self.gradient_step)
+        t_eval, kept = self._times(h)
+        observe, every = self._watched(tolerance)
+        status, result = _run_plan(plan, t0, t_end, h, kept, y, observe, every, interrupt)
+        result.update(method=getattr(method, "name", method), dt=dt, tolerance=tolerance,
+                      gradient=gradient, names=self.scene.names if self.scene else None)
+        return self._finish(plan, status, result, h, t_eval)
+
+    def _times(self, h):
+        """The times that are asked for, and those at which states are kept."""
+        keeps_steps = bool(self.events) or self.dense_output
+        steps = _times_of_steps(self.t0, self.t_end, h) if keeps_steps or \
+            self.times is None else None
+        t_eval = steps if self.times is None else _times_to_keep(self.times, self.t0,
+                                                                 self.t_end)
+        return t_eval, _with_steps(t_eval, steps) if keeps_steps else t_eval
+
+    def _watched(self, tolerance):
+        """What looks at the run, and after how many steps."""
+        if self.events:
+            return _watch_both(self.events, self.observe, self.every), 1
+        if self.observe is None:
+            return None, 16 if tolerance else 512
+        return self.observe, self.every
+
+    def _finish(self, plan, status, result, h, t_eval):
+        """Adds what was found on the way; raises what ended the run."""
+        try:
+            self.subject.trap.spring()
+            if (self.events or self.dense_output) and len(result.t):
+                _find(result, plan, h, t_eval, self.events, self.dense_output)
+            if self.check and status not in (0, _STOPPED):
+                _check(status, result.message)
+        except BaseException as error:
+            result["success"], result["status"] = False, -1
+            result["message"] = str(error) or type(error).__name__
+            error.result = result
+            raise
+        return result
+
+
+def _runs_of_members(H, t_span, y0, given):
+    """The orbits of members, on all processors; what they share is found once, but of
+    functions that run as Python."""
+    problem = _Problem(H, t_span, y0[:, 0], **given)
+    shares = problem.shares()
+    interrupt = _Interrupt()
+
+    def run(start):
+        if interrupt.pressed:
+            raise KeyboardInterrupt
+        return (problem.orbit(start, interrupt) if shares else
+                _Problem(H, t_span, start, **given).orbit(start))
+    runs = [run(y0[:, 0])]  # a function is compiled alone
+    with Progress("solve") as progress, ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+        try:
+            for made in pool.map(run, y0.T[1:]):
+                runs.append(made)
+                progress.at(len(runs) / y0.shape[1])
+        except KeyboardInterrupt:
+            interrupt.pressed = True
+            raise
+    return runs
+
+
 def _solve_members(H, t_span, y0, given):
     """The orbits of an ensemble: y has the shape (2n, members, times)."""
     if np is None:
@@ -176,15 +308,9 @@ def _solve_members(H, t_span, y0, given):
     if given["events"] is not None or given["dense_output"]:
         raise Refused("events and dense_output are of one orbit: y0 has the shape %s"
                       % (y0.shape,))
-    if isinstance(H, (str, os.PathLike)):  # it is read once
-        H = Scene(H, *(given.pop(name) for name in ("parameters", "coordinates",
-                                                    "with_effects", "without_effects")))
-    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-        # A function of Python is traced once: the first orbit is made alone.
-        runs = [solve(H, t_span, y0[:, 0], **given)] if y0.shape[1] else []
-        runs += pool.map(lambda start: solve(H, t_span, start, **given), y0.T[1:])
-    if not runs:
+    if not y0.shape[1]:
         raise Refused("y0 has the shape %s: there is no member" % (y0.shape,))
+    runs = _runs_of_members(H, t_span, y0, given)
     kept = min(len(run.t) for run in runs)
     same = {name: runs[0][name] for name in ("method", "dt", "tolerance", "gradient",
                                              "names")}
@@ -257,69 +383,9 @@ def solve(H: Any, t_span: Sequence[float] | None = None,
     Raises Refused for input that is wrong, Failed where a step fails, and what
     `observe` or H raised; the orbit so far is then the exception's `result`.
     """
+    given = dict(locals())
+    del given["H"], given["t_span"], given["y0"]
     if getattr(y0, "ndim", 1) == 2 or (isinstance(y0, (list, tuple)) and y0 and
                                        isinstance(y0[0], (list, tuple))):
-        given = dict(locals())
-        del given["H"], given["t_span"], given["y0"]
         return _solve_members(H, t_span, y0, given)
-    if method is not None and not isinstance(method, (type, Integrator)):
-        _text("method", method)
-    found = Events(events, args)
-    if observe is not None and not callable(observe):
-        raise TypeError("observe is a function, not %r" % type(observe).__name__)
-    every = _whole_from_one("every", every)
-    if hasattr(H, "_problem"):  # a HGrad
-        H, gradient, gradient_step, given = H._problem(gradient, gradient_step)
-        parameters, args, coordinates, with_effects, without_effects, params = given
-    is_text = isinstance(H, (Scene, str, os.PathLike))
-    subject = _Subject(H, None if is_text else _start_of_function(t_span, y0), parameters,
-                       args, coordinates, with_effects, without_effects, params)
-    scene = subject.scene
-    if args and not found and is_text:
-        raise Refused("args are those of a function: give parameters={name: value}")
-    if scene and scene.is_formula and (y0 is None or t_span is None):
-        raise Refused("a formula needs t_span and y0")
-    y = _finite_start(scene, y0)
-    t0, t_end = _span(scene, t_span)
-    if not abs(t_end - t0) < math.inf or t_end == t0:
-        raise Refused("t_span = %g, %g is no time to go" % (t0, t_end))
-    if gradient:
-        _gradient(gradient)
-    method, dt, rtol, gradient = _of_scene(scene, method, dt, rtol, gradient)
-    if getattr(method, "step", None):
-        if found or dense_output or any(one is not None for one in (
-                observe, t_eval, rtol, atol, max_step)):
-            raise Refused("%s is a function: it takes dt, and neither t_eval, observe, "
-                          "events, dense_output, rtol, atol nor max_step" % method.name)
-        return _solve_by_function(method, subject, y, (t0, t_end), dt, gradient,
-                                  gradient_step, check)
-    dt = None if dt is None else _positive("dt", dt)
-    methods = [method] if method is not None else _choose(subject, dt, t0, y)
-    dt, tolerance = _steps(methods[0], dt, rtol, atol, t_end - t0, y[0])
-    dt = _at_most(dt, max_step, tolerance)
-    h = dt if t_end > t0 else -dt
-    plan, method, gradient = _first_plan(subject, methods, gradient, y, t0, tolerance,
-                                         gradient_step)
-    keeps_steps = bool(found) or dense_output
-    steps = _times_of_steps(t0, t_end, h) if keeps_steps or t_eval is None else None
-    t_eval = steps if t_eval is None else _times_to_keep(t_eval, t0, t_end)
-    if found:
-        observe, every = _watch_both(found, observe, every), 1
-    elif observe is None:
-        every = 16 if tolerance else 512
-    kept = _with_steps(t_eval, steps) if keeps_steps else t_eval
-    status, result = _run_plan(plan, t0, t_end, h, kept, y, observe, every)
-    result.update(method=getattr(method, "name", method), dt=dt, tolerance=tolerance,
-                  gradient=gradient, names=scene.names if scene else None)
-    try:
-        subject.trap.spring()
-        if keeps_steps and len(result.t):
-            _find(result, plan, h, t_eval, found, dense_output)
-        if check and status not in (0, _STOPPED):
-            _check(status, result.message)
-    except BaseException as error:
-        result["success"], result["status"] = False, -1
-        result["message"] = str(error) or type(error).__name__
-        error.result = result
-        raise
-    return result
+    return _Problem(H, t_span, y0, **given).orbit(y0)

@@ -16,6 +16,7 @@ from ._library import (_check, _gradient, _integrator, _lib, _Records, Refused,
                        _SweepOptions)
 from ._arrays import np, _positive, _real, _whole_from_one
 from ._scene import _assign, Scene, _scene, _starts
+from ._progress import Progress
 
 
 def _lines(vary):
@@ -131,12 +132,14 @@ def _sweep(s):
     # would not do: of Python 3.11 it takes an interrupted thread for one that has ended.
     threading.Thread(target=run).start()
     pressed = None
-    while not done.is_set():
-        try:
-            done.wait()
-        except BaseException as error:
-            pressed = error
-            _lib.sweep_stop(s)
+    with Progress("sweep") as progress:
+        while not done.is_set():
+            try:
+                done.wait(0.25 if progress.looks else None)
+                progress.at(np.count_nonzero(array["status"]) / members)
+            except BaseException as error:
+                pressed = error
+                _lib.sweep_stop(s)
     if pressed is not None:
         pressed.result = array
         raise pressed

@@ -125,6 +125,21 @@ def test_data_as_columns():
     assert abs(again[0]["value"] - 9.81) < 0.02, again
 
 
+def test_formulas_need_a_step():
+    """Before a function is traced, and so at once."""
+    def H(t, y):
+        called.append(t)
+        return y[1]**2/2 + y[0]**2
+    called = []
+    for name, given in (("compare", {}), ("run", {}), ("chaos", {}), ("recommend", {
+            "energy_error": 1e-6}), ("flow", {"shape": "disc(q = 1, p_q = 0, 0.1)"})):
+        for source in (H, "p^2/2 - cos(q)"):
+            raised(nevh.Refused, "needs dt", getattr(nevh, name), source, y0=[1, 0], t_end=5,
+                   **given)
+    raised(nevh.Refused, "a function needs y0 and t_end and dt", nevh.compare, H)
+    assert not called
+
+
 def test_wrong_calls():
     for kind, text, function, arguments, named in (
             (TypeError, "did you mean dt?", nevh.compare, ["pendulum"], {"dtt": 1}),

@@ -4,9 +4,11 @@ that need it are skipped.
 SPDX-License-Identifier: GPL-3.0-or-later
 """
 
+import copy
 import ctypes
 import math
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -780,6 +782,59 @@ def test_events_as_scipys():
             assert len(mine.t_events[0]) == len(its.t_events[0]) > 2
             assert np.allclose(mine.t_events[0], its.t_events[0], rtol=0, atol=1e-8)
             assert mine.y_events[0].shape == its.y_events[0].shape
+
+
+def test_results_can_be_pickled():
+    def of(H, **more):
+        orbit = nevh.solve(H, (0, 20), [2, 0], dense_output=True, **more)
+        again = pickle.loads(pickle.dumps(orbit))
+        assert list(again.sol(3.33)) == list(orbit.sol(3.33)) == list(
+            copy.deepcopy(orbit).sol(3.33))
+        assert again.verdict == orbit.verdict and again.names == orbit.names
+    of(PENDULUM, method="verlet", dt=0.1)
+    of(PENDULUM)
+    mine = nevh.Integrator("mine", kick=["1/2", "1/2"], drift=[1])
+    of(PENDULUM, method=mine, dt=0.1, gradient="central2")
+    if not np:
+        return
+    of(pendulum_of_pieces, method="verlet", dt=0.1)
+
+
+def pendulum_of_pieces(t, y):
+    return y[1]**2/2 - (math.cos(y[0]) if y[0] < 9 else 0)
+
+
+def test_progress_is_shown_to_persons_alone():
+    program = """if True:
+        import nevh, sys
+        nevh._progress._first = nevh._progress._between = 0
+        H = "p^2/2 - cos(q)"
+        nevh.solve(H, (0, 1000), [1, 0], "verlet", dt=0.01, t_eval=[1000])
+        print("long", file=sys.stderr)
+        nevh._progress._first = 2
+        nevh.solve(H, (0, 1), [1, 0], "verlet", dt=0.1)
+        print("short", file=sys.stderr)
+    """
+    piped = subprocess.run([sys.executable, "-c", program], stderr=subprocess.PIPE)
+    assert piped.stderr.split() == [b"long", b"short"], piped.stderr
+    master, slave = os.openpty()
+    process = subprocess.Popen([sys.executable, "-c", program], stderr=slave)
+    os.close(slave)
+    said = b""
+    while True:
+        try:
+            read = os.read(master, 1000)
+        except OSError:  # Linux says so at the end
+            break
+        if not read:
+            break
+        said += read
+    os.close(master)
+    assert process.wait() == 0
+    long, short = said.split(b"long")
+    assert b"nevh.solve: 0 s" in long and b"% " in long.replace(b"%,", b"% ") and \
+        long.endswith(b"\r\033[K"), long[-200:]
+    assert short.split() == [b"short"], short
 
 
 def test_ensembles():

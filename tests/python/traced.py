@@ -463,7 +463,8 @@ def test_errors_of_the_function_are_its_own():
         return 1 / 0 if y[1] == 0 else y[1]
     raised(ZeroDivisionError, "", nevh.solve, H, (0, 1), [1.0, 0.0], "rk4", dt=0.1)
     raised(ZeroDivisionError, "", nevh.compare, H, "rk4", dt=0.1, t_end=1, y0=[1, 0])
-    raised(TypeError, "missing", nevh.compare, lambda t, y, k: y[1]**2, y0=[1, 0])
+    raised(TypeError, "missing", nevh.compare, lambda t, y, k: y[1]**2, dt=0.1, t_end=1,
+           y0=[1, 0])
 
 
 if __name__ == "__main__":
