@@ -8,11 +8,13 @@ from __future__ import annotations
 import ctypes as c
 import math
 import time
+from fractions import Fraction
 from typing import Any, Callable, Sequence
 
-from ._library import _lib, _Options, Refused, _text, verdicts
-from ._arrays import np, _numbers, Result
+from ._library import integrators, _lib, _Options, Refused, _text, verdicts
+from ._arrays import np, _numbers, _real, Result, _table
 from ._functions import _set_gradient_steps
+from ._run import _Plan
 from ._scene import Scene, _value
 
 
@@ -32,7 +34,9 @@ class Integrator:
     kick, drift   weights of p -= w*h*dV/dq and q += w*h*dT/dp, in turn; first="drift"
                   begins with the other
     a, b, c       a Butcher table: rows of a, explicit or implicit; c may be left out
-    compose       {name: weights}: steps of another integrator, of parts of h
+    compose       {name: weights}: steps of another integrator, of parts of h.  Those of
+                  avf, gonzalez, itoh-abe and lobatto2 ..., which are no table, are taken
+                  one after the other, as slowly as a function's
     step          a function step(force, t, q, p, h) that returns (q, p) after a step;
                   force(t, q) is -dH/dq.  With step(force, velocity, t, q, p, h) it gets
                   velocity(t, p) = dH/dp too, else masses are 1.  For H that is no sum
@@ -60,7 +64,7 @@ class Integrator:
             raise TypeError("an integrator has kick and drift, or a and b, or compose, or "
                             "step; given are %s" % (" and ".join(given) or "none of them"))
         if step is not None:
-            if not callable(step):
+            if not callable(step) and not isinstance(step, _Parts):
                 raise TypeError("step is a function, not %r" % (step,))
             self.text = ""
             return
@@ -69,6 +73,9 @@ class Integrator:
                      _line("drift", drift)]
         elif given[0] == "compose":
             lines = _composition(compose)
+            if next(iter(compose)) in _without_table():
+                self.step, self.text = _Parts(*next(iter(compose.items()))), ""
+                return
         else:
             lines = _tableau(a, b, c)
         before = getattr(next(iter(compose or ()), None), "text", "")
@@ -132,6 +139,50 @@ def _composition(compose):
     return ["compose = %s: %s" % (getattr(base, "name", base), _weights("step", weights))]
 
 
+def _without_table():
+    """Integrators of one step that are neither splittings nor tables of Runge and Kutta."""
+    return [name for name in integrators()
+            if name.split("-")[0].rstrip("0123456789") in ("avf", "gonzalez", "itoh",
+                                                           "lobatto")]
+
+
+class _Parts:
+    """Steps of another integrator, of parts of a step, one after the other."""
+
+    def __init__(self, name, weights):
+        try:
+            self.name, self.weights = name, [float(Fraction(one)) if isinstance(one, str)
+                                             else _real("step", one) for one in weights]
+        except ValueError:
+            raise Refused("%s is composed of numbers, not of formulas: %.80r"
+                          % (name, weights)) from None
+        if not abs(sum(self.weights) - 1) < 1e-12:
+            raise Refused("the weights of step add up to %.17g, not to 1"
+                          % sum(self.weights))
+
+    def stepper(self, subject, field, t, y):
+        """As that of a function: step(t, q, p, h)."""
+        n = subject.n
+        plan = _Plan(subject, self.name, field.gradient, _numbers(list(y[0])), t, 0.0,
+                     field.gradient_step)
+        state, at = _numbers(list(y[0]))
+        end, end_at = _numbers([t])
+        kept, (_, kept_at) = c.c_size_t(), _table(2 * n, 1)
+
+        def step(t, q, p, h):
+            state[:n], state[n:] = q, p
+            for weight in self.weights:
+                end[0] = t + weight * h
+                status = _lib.run_at(plan.stepper, t, weight * h, end[0], end_at, 1,
+                                     kept_at, c.byref(kept), at, at + 8 * n, None, 0)
+                subject.trap.spring()
+                plan.check(status)
+                t = end[0]
+            field.evaluations = _lib.stepper_counts(plan.stepper).gradients
+            return state[:n].copy(), state[n:].copy()
+        return step
+
+
 def _tableau(a, b, c):
     """The lines of a Butcher table."""
     if a is None:
@@ -159,7 +210,7 @@ class _Field:
     """Values and gradients of H at states of Python."""
 
     def __init__(self, subject, gradient, t0, y, gradient_step=None):
-        self.n = subject.n
+        self.n, self.gradient, self.gradient_step = subject.n, gradient, gradient_step
         self._state, self._at = _numbers(y)
         o = _Options(gradient=_lib.gradient_named(gradient.encode()), t=t0, q=self._at,
                      p=self._at + 8 * self.n)
@@ -189,6 +240,8 @@ class _Field:
 def _stepper(mine, field, subject, t, y):
     """The user's function as step(t, q, p, h); checks what it returns."""
     import inspect
+    if isinstance(mine.step, _Parts):
+        return mine.step.stepper(subject, field, t, y)
     n, separable = subject.n, subject.separable(t, y)
     zeros = [0.0] * n
 

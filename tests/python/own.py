@@ -155,6 +155,26 @@ def test_functions_refuse_what_they_do_not_take():
     raised(nevh.Refused, "is a function", nevh.Integrator, "x", compose={mine: [1]})
 
 
+def test_compositions_of_what_is_no_table():
+    a = 1/(2 - 2**(1/3))
+    for base, exact in (("avf", True), ("gonzalez", True), ("lobatto2", False)):
+        made = nevh.Integrator("four", compose={base: [a, 1 - 2*a, a]})
+        assert made.order == 4 and made.symmetric and made.symplectic == (not exact), made
+        orbit = nevh.solve(FORMULA, (0, 20), [2, 0], made, dt=0.1)
+        assert orbit.energy_error < (1e-13 if exact else 1e-3)
+        rough = nevh.Integrator("two", compose={base: [0.6, -0.2, 0.6]})
+        assert rough.order == 2, rough
+    one = nevh.solve(FORMULA, (0, 5), [2, 0], nevh.Integrator("one", compose={"avf": ["1"]}),
+                     dt=0.1)
+    base = nevh.solve(FORMULA, (0, 5), [2, 0], "avf", dt=0.1)
+    assert abs(one.y - base.y).max() < 1e-11
+    again = pickle.loads(pickle.dumps(made))
+    assert again.order == 4 and list(again.step.weights) == list(made.step.weights)
+    for text, compose in (("add up to 1.1", {"avf": [0.5, 0.6]}), ("of numbers", {
+            "avf": ["2^(1/3)"]}), ("no table", {"tao2": [1]}), ("no table", {"taylor": [1]})):
+        raised(nevh.Refused, text, nevh.Integrator, "x", compose=compose)
+
+
 def test_step_with_a_default():
     def step(force, t, q, p, h, parts=1):
         return leapfrog(force, t, q, p, h)
