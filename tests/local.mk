@@ -228,6 +228,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_report_browser.sh \
 	tests/tool/nevh_page.sh \
 	tests/tool/nevh_page_browser.sh \
+	tests/tool/nevh_page_lesson.sh \
 	tests/tool/nevh_portrait.sh \
 	tests/tool/nevh_map.sh \
 	tests/tool/nevh_native.sh \
@@ -292,6 +293,7 @@ EXTRA_DIST += \
 	tests/support/shipped.h \
 	tests/support/starve.c \
 	tests/support/try_axe.mjs \
+	tests/support/try_lesson.mjs \
 	tests/support/try_page.mjs \
 	tests/support/try_report.mjs \
 	tests/support/websocket.mjs

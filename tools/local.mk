@@ -89,6 +89,8 @@ tools_nevh_SOURCES = \
 	tools/report/animation_html.c \
 	tools/report/animation_private.h \
 	tools/cli/page_html.c \
+	tools/report/lesson.c \
+	tools/report/lesson.h \
 	tools/report/live_page.c \
 	tools/ensemble/map.h \
 	tools/ensemble/map.c \

@@ -12,12 +12,12 @@ const element = (name, properties = {}, ...children) => {
 function sayWrong(text) {
   const end = text.indexOf("\n") + 1 || text.length;
   at("wrong").replaceChildren(element("span", {}, text.slice(0, end)), text.slice(end));
+  offerParameter(text);
 }
 
 // ---- what is shown of a scene ----
 function show() {
-  document.title = (scene.title || given.name) + " - nevh";
-  at("title").textContent = scene.title || given.name;
+  showTitle();
   at("source").textContent = scene.source;
   at("text").value = S.text;
   const names = scene.coordinates.map((c) => c.name);
@@ -26,12 +26,9 @@ function show() {
     : scene.parts.length ? "The configuration" + (scene.parts.some((p) => p.kind === "bob")
       ? ": drag a body to a new start." : ".") : names.length === 1 ? names[0] + " against time."
     : "All coordinates, side by side.";
-  at("phase-caption").textContent = "Coordinate and momentum" +
-    (scene.coordinates.length === 1 ? ", over levels of H" : "") +
-    ": drag to a new start.";
+  showView();
   at("scene").setAttribute("aria-label", "The configuration, by scheme");
   at("error").setAttribute("aria-label", "Energy errors against time");
-  at("phase").setAttribute("aria-label", "Phase plane");
   showEffects();
   showSchemes();
   at("plane").replaceChildren(...scene.coordinates.map((c, k) =>
@@ -41,6 +38,31 @@ function show() {
   at("disc").checked = S.disc;
   at("gradient").value = S.gradient;
   showSliders();
+  const mine = cutSection(S.text, MINE)[0];
+  if (mine) at("weights").value = mine;
+  setWall(S.wall);
+}
+// The plane, or a section.
+function showView() {
+  const one = section(), k = one ? planeOf(one) : -1, { length } = scene.coordinates;
+  const click = k >= 0 && (one.every ? length === 1 : length === 2);
+  at("phase-caption").textContent = !one ? "Coordinate and momentum" +
+    (length === 1 ? ", over levels of H" : "") + ": drag to a new start."
+    : (one.every ? "Every " + +digits(one.every, 4) + after(scene.t_label)
+      : "When " + one.left + " = " + one.right) + ", by " + S.schemes[0] +
+      (click ? ": click to start an orbit" + (one.every ? "." : " of the same energy.") : ".");
+  at("view").replaceChildren(new Option("phase plane", -1), ...scene.sections.map((s, i) =>
+    s.items.length > 1 ? new Option("section: " + s.name, i) : ""));
+  at("view").value = S.section;
+  at("clear").hidden = !one;
+  at("views").hidden = scene.sections.length === 0;
+  at("phase").setAttribute("aria-label", one ? "Section" : "Phase plane");
+}
+function setWall(on) {
+  S.wall = on;
+  document.body.classList.toggle("wall", on);
+  at("wall").setAttribute("aria-pressed", on);
+  nevhType = on ? 1.7 : 1;
 }
 function showEffects() {
   const fields = [], numbers = [];
@@ -104,8 +126,9 @@ const stepOf = (value) => +(longest() * 10 ** (3 * (value / 100 - 1))).toPrecisi
 function showSliders() {
   at("dt").value = 100 * (1 + Math.log10(S.dt / longest()) / 3);
   const words = "dt = " + nevhNumber(S.dt) + after(scene.t_label);
-  at("dt-text").textContent = words + (S.limited ? "; " + S.limited +
-    " is stable up to " + +S.limit.toPrecision(3) + after(scene.t_label) +
+  if (document.activeElement !== at("dt-number")) at("dt-number").value = S.dt;
+  at("dt-text").textContent = scene.t_label + (S.limited ? (scene.t_label && "; ") +
+    S.limited + " is stable up to " + +S.limit.toPrecision(3) + after(scene.t_label) +
     " for small oscillations" : "");
   at("dt").setAttribute("aria-valuetext", words);
   at("speed").value = S.speed;
@@ -221,6 +244,7 @@ function listenToDrags() {
     if (bodyAt(...configuration.under(event.touches[0])) >= 0) event.preventDefault();
   }, { passive: false });
   const toPlane = (event) => {
+    if (S.section >= 0) return;
     const [q, p] = phase.under(event), state = (S.start || startOf()).slice();
     state[S.plane] = q;
     state[scene.coordinates.length + S.plane] = p;
@@ -229,6 +253,7 @@ function listenToDrags() {
     drag();
   };
   at("phase").onpointerdown = (event) => {
+    if (S.section >= 0) { clickSection(event); return; }
     inPlane = pulling = true;
     at("phase").setPointerCapture(event.pointerId);
     toPlane(event);
@@ -280,6 +305,20 @@ function listen() {
     showSliders();
     race();
   };
+  at("dt-number").onchange = () => {
+    const dt = +at("dt-number").value;
+    if (!(dt > 0)) { at("dt-number").value = S.dt; return; }
+    S.dt = dt;
+    S.limit = Math.max(S.limit, dt);
+    race().then(showSliders);
+  };
+  at("view").onchange = () => { S.section = +at("view").value; showView(); restartSection(); };
+  at("clear").onclick = restartSection;
+  at("wall").onclick = () => setWall(!S.wall);
+  at("kind").append(...Object.keys(KINDS).map((name) => new Option(name)));
+  at("kind").onchange = () => { at("weights").value = KINDS[at("kind").value]; };
+  at("kind").onchange();
+  at("own").onsubmit = (event) => { event.preventDefault(); runMine(); };
   at("exact").onchange = () => { S.exact = at("exact").checked; showSchemes(); race(); };
   at("disc").onchange = () => { S.disc = at("disc").checked; race(); };
   at("plane").onchange = () => { S.plane = +at("plane").value; race(); };
@@ -302,7 +341,7 @@ function listen() {
   document.onkeydown = (event) => {
     if (event.target.closest("input,textarea,select,button") || event.ctrlKey ||
       event.metaKey || event.altKey) return;
-    const key = { " ": "play", s: "step", r: "restart" }[event.key.toLowerCase()];
+    const key = { " ": "play", s: "step", r: "restart", w: "wall" }[event.key.toLowerCase()];
     if (key) { event.preventDefault(); at(key).click(); }
   };
   listenToDrags();

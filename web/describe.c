@@ -1,7 +1,9 @@
 /* nevh: the live page's module: what is in a scene, as JSON.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "page.h"
+#include "lesson.h"
 #include <math.h>
+#include <nevh/extend.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -119,32 +121,55 @@ static void put_parts(json *j, const page *g) {
     put(j, "]");
 }
 
-/* Those that need GSL are not in the module. */
-static bool is_absent(const char *name) {
-    return strncmp(name, "gsl-", 4) == 0 || strncmp(name, "tao", 3) == 0;
+/* What follows from the weights of a scheme of the scene's. */
+static void put_facts(json *j, const nevh_integrator *x) {
+    nevh_scheme_facts facts;
+    char text[400];
+    put(j, ",\"gradients\":%d,\"limit\":", nevh_integrator_gradients(x));
+    put_number(j, nevh_stability_limit(x));
+    if (!nevh_integrator_facts(x, &facts))
+        put_key(j, "lacks", nevh_scheme_shortfall(&facts, text, sizeof text));
 }
 
-static void put_integrators(json *j) {
-    const nevh_integrator *const *all = nevh_integrators();
-    bool first = true;
+static void put_integrator(json *j, const nevh_integrator *x, bool own) {
+    if (!lesson_has(nevh_integrator_name(x)))
+        return;
+    put(j, "%s{\"order\":%d,\"own\":%s", j->text[j->used - 1] == '[' ? "" : ",",
+        nevh_integrator_order(x), own ? "true" : "false");
+    put_key(j, "name", nevh_integrator_name(x));
+    put_key(j, "symplectic", nevh_claim_name(nevh_integrator_symplectic(x)));
+    put_key(j, "symmetric", nevh_claim_name(nevh_integrator_symmetric(x)));
+    if (own)
+        put_facts(j, x);
+    put(j, "}");
+}
+
+static void put_integrators(json *j, const page *g) {
     put(j, ",\"integrators\":[");
-    for (; *all; all++) {
-        const char *name = nevh_integrator_name(*all);
-        if (is_absent(name))
-            continue;
-        put(j, "%s{\"order\":%d,\"fixed\":%s", first ? "" : ",",
-            nevh_integrator_order(*all),
-            nevh_integrator_needs_tolerance(*all) ? "false" : "true");
-        put_key(j, "name", name);
-        put_key(j, "symplectic",
-                nevh_claim_name(nevh_integrator_symplectic(*all)));
+    for (size_t i = 0; nevh_scene_integrator(g->scene, i) && !j->lacking; i++)
+        put_integrator(j, nevh_scene_integrator(g->scene, i), true);
+    const nevh_integrator *const *all = nevh_integrators();
+    for (; *all && !j->lacking; all++)
+        put_integrator(j, *all, false);
+    put(j, "]");
+}
+
+static void put_sections(json *j, const page *g) {
+    put(j, ",\"sections\":[");
+    for (size_t i = 0; i < nevh_scene_section_count(g->scene); i++) {
+        const nevh_scene_section *x = nevh_scene_section_at(g->scene, i);
+        put(j, "%s{\"every\":%.17g", i ? "," : "", x->every);
+        put_key(j, "name", x->name);
+        put_key(j, "left", x->left);
+        put_key(j, "right", x->right);
+        put_list(j, "items", x->items, x->item);
         put(j, "}");
-        first = false;
     }
     put(j, "]");
 }
 
-static void put_run(json *j, const nevh_scene_run *run) {
+static void put_run(json *j, const page *g) {
+    const nevh_scene_run *run = g->run;
     put(j, ",\"run\":{\"t_start\":%.17g,\"t_end\":", run->t_start);
     put_number(j, run->t_end);
     put(j, ",\"dt\":[");
@@ -153,7 +178,8 @@ static void put_run(json *j, const nevh_scene_run *run) {
     put(j, "]");
     put_list(j, "integrators", run->integrators, run->integrator);
     put_list(j, "gradients", run->gradients, run->gradient);
-    put(j, "}");
+    lesson_pace usual = lesson_usual(g->scene);
+    put(j, ",\"step\":%.17g,\"rate\":%.17g}", usual.dt, usual.rate);
 }
 
 char *page_scene_text(page *g) {
@@ -166,9 +192,10 @@ char *page_scene_text(page *g) {
     put_coordinates(&j, g);
     put_equations(&j, g);
     put_parts(&j, g);
-    put_integrators(&j);
+    put_integrators(&j, g);
+    put_sections(&j, g);
     if (g->run)
-        put_run(&j, g->run);
+        put_run(&j, g);
     put(&j, "}");
     if (!j.lacking)
         return j.text;

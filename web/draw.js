@@ -3,10 +3,9 @@
 "use strict";
 
 // ---- drawing ----
-const configuration = new NevhPlane(at("scene"), [8, 8, 8, 8]);
+const configuration = new NevhPlane(at("scene"), [8, 8, 8, 24]);
 const errors = new NevhPlane(at("error"), [46, 36, 18, 28]);
-const margins = (left, bottom, right, top) =>
-  Object.assign(configuration, { left, bottom, right, top });
+const margins = (...values) => { configuration.margins = values; };
 const phase = new NevhPlane(at("phase"), [50, 36, 18, 28]);
 
 function reach(x, y) {
@@ -14,6 +13,18 @@ function reach(x, y) {
   if (Number.isFinite(x + y))
     seen = [Math.min(box[0], x), Math.max(box[1], x),
       Math.min(box[2], y), Math.max(box[3], y)];
+}
+// Room for all that a run will show, and which bodies will stay where they are.
+let still = [];
+function reachAhead({ low, high }) {
+  const n = scene.coordinates.length;
+  still = [];
+  for (let j = 0; j < scene.bobs; j++) {
+    const [x0, y0] = low.slice(2 * n + 2 * j), [x1, y1] = high.slice(2 * n + 2 * j);
+    reach(x0, y0);
+    reach(x1, y1);
+    still.push(x0 === x1 && y0 === y1);
+  }
 }
 function widen(picture) {
   if (!picture || !picture.length) return;
@@ -30,14 +41,12 @@ function drawConfiguration() {
     margins(50, 36, 18, 28);
     return scene.coordinates.length === 1 ? drawMotion() : drawProfile();
   }
-  margins(8, 8, 8, 8);
+  margins(8, 8, 8, 24);
   const b = seen || [-1, 1, -1, 1];
   const reach = Math.max(b[1] - b[0], b[3] - b[2], 1e-9) / 2;
   const cx = (b[0] + b[1]) / 2, cy = (b[2] + b[3]) / 2;
-  const fix = scene.parts.some((p) => p.kind === "rod");
-  const far = fix ? Math.max(...b.map(Math.abs)) * 1.12 : reach * 1.15;
-  if (!pulling) configuration.box = fix ? [-far, far, -far, far]
-    : [cx - far, cx + far, cy - far, cy + far];
+  const far = reach * 1.15;
+  if (!pulling) configuration.box = [cx - far, cx + far, cy - far, cy + far];
   const pen = configuration.begin(true);
   pen.lineWidth = 1;
   pen.globalAlpha = 0.45;
@@ -52,7 +61,7 @@ function drawConfiguration() {
 }
 const when = () => "t = " + +digits(rows[0]?.[0] ?? 0, 5) + after(scene.t_label);
 function stamp(pen) {
-  pen.font = "13px system-ui,sans-serif";
+  pen.font = 13 * nevhType + "px system-ui,sans-serif";
   pen.fillStyle = nevhColour("fore");
   pen.textAlign = "left";
   pen.textBaseline = "top";
@@ -78,7 +87,7 @@ function drawMotion() {
     box[2] = Math.min(box[2], h.q[j]); box[3] = Math.max(box[3], h.q[j]);
   }));
   const room = 0.08 * (box[3] - box[2]) || 0.1 * Math.abs(box[3]) || 1;
-  configuration.box = [box[0], ahead(...box), box[2] - room, box[3] + room];
+  configuration.box = [box[0], later(...box), box[2] - room, box[3] + room];
   const pen = configuration.begin(false);
   pen.save();
   configuration.axes(nevhTicks(box[0], box[1]),
@@ -93,7 +102,7 @@ function drawMotion() {
   }
   pen.restore();
 }
-const ahead = (from, to) => to + 0.03 * (to - from); // of the last mark
+const later = (from, to) => to + 0.03 * (to - from); // of the last mark
 function dashed(pen, i) {
   pen.strokeStyle = pen.fillStyle = nevhColour(list[i].colour);
   pen.lineWidth = 1.6;
@@ -131,17 +140,27 @@ function drawParts(pen, i) {
   pen.globalAlpha = i === 0 ? 1 : 0.75;
   pen.lineWidth = i === 0 ? 3 : 2;
   pen.setLineDash(colour < 0 ? [4, 4] : NEVH_DASHES[i % 4]);
-  let from = 0;
+  let from = 0, bob = 0;
   for (const part of scene.parts) {
     const v = picture.subarray(from, from + part.count);
-    if (part.kind === "rod") configuration.line(v);
-    else configuration.mark(v[0], v[1], colour, i === 0 ? 8 : 7);
     from += part.count;
+    if (part.kind === "rod") configuration.line(v);
+    else if (!still[bob++]) configuration.mark(v[0], v[1], colour, i === 0 ? 8 : 7);
+    else if (i === 0) { // of no scheme
+      pen.fillStyle = configuration.fore;
+      configuration.mark(v[0], v[1], 0, 6);
+      pen.fillStyle = nevhColour(colour);
+    }
   }
   pen.restore();
 }
+// The axes stay; they grow by doubling, and by decades.
+let errorBox = null;
 function drawErrors() {
   let low = Infinity, high = 1e-16, first = 0, end = 1e-9;
+  const expected = ahead.map((one) => one ? one.error : 0);
+  const least = Math.min(...expected.filter((v) => v > 0));
+  if (least < Infinity) { high = Math.max(...expected); low = least / 10; }
   histories.forEach((h) => h.most.forEach((v, i) => {
     if (Number.isFinite(v)) high = Math.max(high, v);
     if (v > 0) low = Math.min(low, v);
@@ -150,8 +169,12 @@ function drawErrors() {
   if (histories[0]?.t.length) first = histories[0].t[0];
   high = Math.min(1e4, high * 2);
   low = Math.max(1e-17, Math.min(low, high / 1e3));
-  errors.box = [first, ahead(first, Math.max(end, first + 20 * S.dt)),
-    Math.floor(Math.log10(low)), Math.ceil(Math.log10(high))];
+  const span = SHOWN * seconds(), own = errorBox ||
+    [first, first + span, Math.floor(Math.log10(low)), Math.ceil(Math.log10(high))];
+  while (end > own[1]) own[1] += own[1] - own[0];
+  own[2] = Math.min(own[2], Math.floor(Math.log10(low)));
+  own[3] = Math.max(own[3], Math.ceil(Math.log10(high)));
+  errorBox = errors.box = own;
   const pen = errors.begin(false), powers = [];
   const by = Math.ceil((errors.box[3] - errors.box[2]) / 6);
   for (let v = Math.ceil(errors.box[3]); v > errors.box[2]; v -= by)
@@ -161,12 +184,11 @@ function drawErrors() {
     "t" + unit(scene.t_label), "|energy error|", (v) => "1e" + v);
   histories.forEach((h, i) => {
     if (list[i].width > 1) return;
-    const points = [];
-    h.t.forEach((t, j) => points.push(t, Math.log10(h.most[j]))); // none of 0
+    const points = nevhSpans(h.t, h.most.map(Math.log10), own[0], own[1], 120);
     dashed(pen, i);
     errors.line(points);
     pen.setLineDash([]);
-    errors.mark(...points.slice(-2), list[i].colour, 4);
+    if (points.length) errors.mark(h.t.at(-1), points.at(-1), list[i].colour, 4);
   });
   pen.restore();
 }
@@ -193,6 +215,13 @@ function choosePhaseBox() {
     q0 = Math.min(q0, wrapped(trail[i], c)); q1 = Math.max(q1, wrapped(trail[i], c));
     p0 = Math.min(p0, trail[i + 1]); p1 = Math.max(p1, trail[i + 1]);
   }
+  if (range()) {
+    const n = scene.coordinates.length, { low, high } = range(), k = S.plane;
+    turns = turns || c.period > 0 && high[k] - low[k] > c.period / 2;
+    q0 = Math.min(q0, wrapped(low[k], c)); q1 = Math.max(q1, wrapped(high[k], c));
+    p0 = Math.min(p0, low[n + k]); p1 = Math.max(p1, high[n + k]);
+  }
+  if (extent) { p0 = Math.min(p0, extent[0]); p1 = Math.max(p1, extent[1]); }
   if (list[0] && rows[0] && !(q1 >= q0)) [q0, q1, p0, p1] = [-1, 1, -1, 1];
   if (turns) { q0 = -c.period / 2; q1 = c.period / 2; }
   const n = scene.coordinates.length, least = (from, q) => steps > 0 || !rows[0]
@@ -203,8 +232,8 @@ function choosePhaseBox() {
     p0 >= phaseBox[2] && p1 <= phaseBox[3];
   if (inside) return;
   stood = steps === 0;
-  phaseBox = [q0 - (turns ? 0 : 0.25 * dq), q1 + (turns ? 0 : 0.25 * dq),
-    p0 - 0.3 * dp, p1 + 0.3 * dp];
+  phaseBox = [q0 - (turns ? 0 : 0.15 * dq), q1 + (turns ? 0 : 0.15 * dq),
+    p0 - 0.15 * dp, p1 + 0.15 * dp];
   if (scene.coordinates.length === 1) askLevels(phaseBox.slice());
 }
 // A coordinate with a period is shown within one of them, but where it stays near
@@ -212,6 +241,26 @@ function choosePhaseBox() {
 let turns = false;
 const wrapped = (q, c) => turns
   ? q - c.period * Math.round(q / c.period) : q;
+// Of one angle: momenta on the levels that go round, the lowest of which is the
+// separatrix.
+async function findExtent() {
+  const c = scene.coordinates[0], one = range(), nx = 65, ny = 81;
+  extent = null;
+  if (scene.coordinates.length > 1 || !(c.period > 0) || !one || scene.balance) return;
+  const p = 4 * Math.max(Math.abs(one.low[1]), Math.abs(one.high[1]));
+  const from = (one.low[0] + one.high[0]) / 2 - c.period / 2;
+  const { ok, values } = await ask({ ask: "levels", at: S.start || startOf(), k: 0,
+    box: [from, from + c.period, -p, p], nx, ny });
+  if (!ok || !(p > 0)) return;
+  const over = (i) => Array.from({ length: ny }, (_, j) => values[j * nx + i]);
+  let top = -Infinity; // of the lowest of H over each coordinate
+  for (let i = 0; i < nx; i++) top = Math.max(top, Math.min(...over(i)));
+  const inside = Array.from({ length: ny }, (_, j) => j).filter((j) =>
+    values.subarray(j * nx, j * nx + nx).some((v) => v <= top));
+  const momentum = (j) => -p + 2 * p * j / (ny - 1);
+  if (inside.length && inside[0] > 0 && inside.at(-1) < ny - 1)
+    extent = [momentum(inside[0]), momentum(inside.at(-1))];
+}
 let asking = false, boxAsked = null;
 async function askLevels(box) {
   boxAsked = box;
@@ -233,6 +282,7 @@ async function askLevels(box) {
   asking = false;
 }
 function drawPhase() {
+  if (S.section >= 0) return drawSection();
   const c = scene.coordinates[S.plane];
   choosePhaseBox();
   phase.box = phaseBox;
@@ -273,7 +323,7 @@ function drawDisc(pen, i, c) {
     phase.mark(wrapped(rows[i][4 + S.plane * w + j], c),
       rows[i][4 + (n + S.plane) * w + j], 0, 1.4);
 }
-let told = -Infinity;
+let told = -Infinity, written = -Infinity;
 function draw() {
   drawConfiguration();
   drawErrors();
@@ -289,7 +339,7 @@ function report(atOnce) {
   while (body.rows.length > lines) body.deleteRow(-1);
   while (body.rows.length < lines) {
     const row = body.insertRow();
-    for (let j = 0; j < 4; j++) row.insertCell();
+    for (let j = 0; j < 5; j++) row.insertCell();
   }
   at("states").classList.toggle("bare", !S.disc);
   at("when").textContent = "The states at t = " + digits(rows[0]?.[0] ?? NaN) +
@@ -301,6 +351,7 @@ function report(atOnce) {
     const name = r.colour < 0 ? " exact" : " " + r.scheme;
     const values = [mark + name, row ? digits(row[1], 9) : "",
       row ? row[2].toExponential(2) : "refused",
+      ahead[i] ? ahead[i].error.toExponential(1) : "",
       disc >= 0 && rows[disc] ? areaText(rows[disc], list[disc].area) : ""];
     values.forEach((v, j) => {
       if (cells[j].textContent !== v) j ? cells[j].textContent = v
@@ -308,9 +359,19 @@ function report(atOnce) {
     });
     cells[0].firstChild.style.color = nevhColour(r.colour);
   }
-  if (!atOnce && (playing ? now() - told < 5000 : told > 0)) return;
-  told = now();
-  at("status").textContent = spoken();
+  if (!atOnce && now() - written < 250) return;
+  showTitle();
+  showLesson();
+  const facts = factsText();
+  if (at("facts").textContent !== facts) at("facts").textContent = facts;
+  const due = ahead[0] ? "largest by t = " + timeText(ahead[0].t) : "";
+  if (at("due").textContent !== due) at("due").textContent = due;
+  written = now();
+  if (atOnce || now() - told > 5000 || !playing) {
+    told = now();
+    const text = spoken();
+    if (at("status").textContent !== text) at("status").textContent = text;
+  }
   // Lines end between options alone.
   at("command").replaceChildren(...command().split(/ (?=--)/).flatMap((text, i) =>
     [i ? " " : "", element("span", {}, text)]));

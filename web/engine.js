@@ -6,7 +6,8 @@
 // send(message, buffers) posts an answer; returns what takes requests.
 function nevhEngine(send) {
   const BUDGET = 12; // milliseconds in which a request takes steps
-  let x, page = 0, n = 0, parts = 0, plain = false, runs = [], bobs = [];
+  const AHEAD = 10, ORBITS = 11, SLOTS = 24; // after those that race
+  let x, page = 0, n = 0, parts = 0, plain = false, runs = [], bobs = [], orbits = [];
   const numbers = (at, count) => new Float64Array(x.memory.buffer, at, count);
 
   function textOf(at) {
@@ -51,6 +52,8 @@ function nevhEngine(send) {
         x.page_change(page, mark.charCodeAt(0), at))) return fault();
     if (x.page_begin(page)) return fault();
     n = x.page_dof(page);
+    orbits = [];
+    limits.clear();
     const scene = JSON.parse(textOf(x.page_describe(page)));
     // Two coordinates without a picture are drawn as a point of their plane.
     plain = scene.parts.length === 0 && n === 2;
@@ -73,7 +76,8 @@ function nevhEngine(send) {
     return [...row, ...bobs.flatMap((from) => [shown[from], shown[from + 1]])];
   }
 
-  // Rows of numbers: t, energy, error, status, 2n of the state.
+  // Rows of numbers: t, energy, error, the largest |error| of the last steps, 2n of
+  // the state.
   const state = (slot, width) =>
     numbers(x.page_state(page, slot), 4 + 2 * n * width);
   function pictureOf(row) {
@@ -95,14 +99,78 @@ function nevhEngine(send) {
     if (start) numbers(x.page_start(page), 2 * n).set(start);
     const disc = list.find((r) => r.width > 1);
     const [dq, dp] = disc ? [radius(disc.k), radius(n + disc.k)] : [0, 0];
-    runs = list.map((r, slot) => {
-      const status = withTexts([r.scheme, r.gradient], (scheme, gradient) =>
-        x.page_race(page, slot, scheme, gradient, r.h, r.tolerance || 1e-9,
-          r.width || 1, r.k || 0, dq, dp));
-      return status ? { ...fault(), width: 0 }
-        : { ok: true, message: "", width: r.width || 1 };
-    });
+    runs = list.map((r, slot) => enter(slot, r, dq, dp)
+      ? { ...fault(), width: 0 } : { ok: true, message: "", width: r.width || 1 });
     return { ok: true, runs: runs.map((r) => ({ ...r })), ...now() };
+  }
+  const enter = (slot, r, dq = 0, dp = 0) =>
+    withTexts([r.scheme, r.gradient], (scheme, gradient) =>
+      x.page_race(page, slot, scheme, gradient, r.h, r.tolerance || 1e-9,
+        r.width || 1, r.k || 0, dq, dp));
+
+  // What runs will reach in some steps: [least, largest] of each number of the state
+  // and of what is drawn of it, and the largest error.
+  function ahead({ list, steps, start }) {
+    if (start) numbers(x.page_start(page), 2 * n).set(start);
+    const most = Math.max(1, Math.min(steps, Math.floor(6000 / n)));
+    const every = Math.max(1, Math.floor(most / 1000));
+    const found = list.map((r) => {
+      if (enter(AHEAD, r)) return null;
+      let low = null, high = null, error = 0, failed = 0;
+      for (let done = 0; done < most && !failed; done += every) {
+        const row = state(AHEAD, 1), seen = observed(row);
+        low = low ? low.map((v, i) => Math.min(v, seen[i])) : [...seen];
+        high = high ? high.map((v, i) => Math.max(v, seen[i])) : [...seen];
+        error = Math.max(error, row[3]);
+        failed = x.page_advance(page, AHEAD, every);
+      }
+      return { low: low.slice(4), high: high.slice(4), error, failed,
+        t: state(AHEAD, 1)[0] };
+    });
+    x.page_leave(page, AHEAD);
+    return { ok: true, found };
+  }
+
+  // ---- a section: an orbit is started where it is clicked ----
+  // The start that has two coordinates of the plane at a and b.
+  function seed({ section, k, a, b, energy, at }) {
+    const memory = x.page_take(16 * n);
+    numbers(memory, 2 * n).set(at);
+    const failed = x.page_seed(page, section, k, a, b, energy, memory);
+    const start = [...numbers(memory, 2 * n)];
+    x.page_release(memory);
+    return failed ? fault() : { ok: true, start };
+  }
+  // Orbits beyond the slots there are take the place of the oldest.
+  function launch({ section, run, start, clear }) {
+    if (clear) orbits = [];
+    const slot = ORBITS + orbits.length % (SLOTS - ORBITS);
+    const before = numbers(x.page_start(page), 2 * n).slice();
+    numbers(x.page_start(page), 2 * n).set(start);
+    const failed = enter(slot, run) || x.page_watch(page, slot, section);
+    numbers(x.page_start(page), 2 * n).set(before);
+    if (failed) return fault();
+    orbits.forEach((o) => { if (o.slot === slot) o.ended = true; });
+    orbits.push({ slot, ended: false, count: 0 });
+    return { ok: true, number: orbits.length - 1 };
+  }
+  // Some steps of all of them: [x, y, ...] of each one's points.
+  function turn({ steps, most }) {
+    const began = performance.now(), points = orbits.map(() => []);
+    while (orbits.some((o) => !o.ended) && performance.now() - began < BUDGET)
+      orbits.forEach((o, i) => {
+        if (o.ended) return;
+        o.ended = x.page_advance(page, o.slot, steps) !== 0;
+        points[i].push(...numbers(x.page_points(page), 2 * x.page_point_count(page)));
+        o.count += x.page_point_count(page);
+        o.ended = o.ended || o.count >= most;
+      });
+    return { ok: true, points, running: orbits.some((o) => !o.ended) };
+  }
+  function lesson({ schemes, gradient }) {
+    const text = withTexts([...schemes, gradient], (kept, other, by) =>
+      textOf(x.page_lesson(page, kept, other, by)));
+    return { ok: true, lesson: JSON.parse(text) };
   }
 
   // The states as they are.
@@ -156,14 +224,15 @@ function nevhEngine(send) {
     const fastest = x.page_fastest(page, h);
     const steps = schemes.map((scheme) => {
       if (!limits.has(scheme))
-        limits.set(scheme, withTexts([scheme], (at) => x.page_limit(at)));
+        limits.set(scheme, withTexts([scheme], (at) => x.page_limit(page, at)));
       const most = limits.get(scheme); // 0: stable with no step
       return fastest > 0 && most > 0 ? most / fastest : NaN;
     });
     return { ok: true, steps };
   }
 
-  const known = { limit, load, open, race, go, levels, picture };
+  const known = { limit, load, open, race, go, levels, picture, ahead, seed, launch,
+    turn, lesson };
   return async function take(request) {
     let answer;
     try {

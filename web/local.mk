@@ -1,8 +1,8 @@
 # The live page without a scene, web/kit.html: the library as WebAssembly, and
 # scripts.  make page makes it, where there is clang for that; tarballs have it.
-page_sources = web/page.h web/page.c web/describe.c web/pace.c web/pair.c web/absent.c \
+page_sources = web/page.h web/page.c web/describe.c web/pace.c web/crossing.c web/roots.c web/pair.c web/absent.c \
 	web/absent_code.c
-page_parts = web/page.css web/page.html web/unpack.js web/engine.js web/view.js web/page.js web/draw.js \
+page_parts = web/page.css web/page.html web/unpack.js web/engine.js web/view.js web/page.js web/draw.js web/section.js web/try.js \
 	web/controls.js
 page_scripts = web/module.sh web/kit.sh web/gallery.sh
 EXTRA_DIST += $(page_sources) $(page_parts) $(page_scripts)
@@ -13,7 +13,7 @@ page_packages = clang lld llvm wasi-libc libclang-rt-dev-wasm32 zopfli
 if HAVE_KIT
 page: web/kit.html
 web/kit.html: web/local.mk $(page_sources) $(page_parts) $(page_scripts) \
-  $(libnevh_core_la_SOURCES)
+  tools/report/lesson.c tools/report/lesson.h $(libnevh_core_la_SOURCES)
 	$(AM_V_GEN)$(MKDIR_P) web/objects
 	$(AM_V_at)CC='$(WASM_CC)' AR='$(WASM_AR)' WASM_SYSROOT='$(WASM_SYSROOT)' \
 	  GSL_INCLUDE='$(GSL_INCLUDE)' $(SHELL) $(srcdir)/web/module.sh \

@@ -35,7 +35,7 @@ compile() {
         -ffp-contract=off -ffunction-sections -fdata-sections \
         -DNDEBUG -DNEVH_PORTABLE -D_GNU_SOURCE -D_WASI_EMULATED_SIGNAL \
         -isystem "$folder/include" -I"$srcdir/include" -I"$srcdir/lib" \
-        -I"$srcdir/integrators" -I"$srcdir/web" \
+        -I"$srcdir/integrators" -I"$srcdir/web" -I"$srcdir/tools/report" \
         -c "$srcdir/$1" -o "$object" 2>"$object.log"
 }
 
@@ -57,8 +57,9 @@ done
 
 # The module's own come whole; of the library what they need.
 own=
-for source in page describe pace pair absent absent_code; do
-    compile web/$source.c || { cat "$object.log"; exit 1; }
+for source in web/page web/describe web/pace web/crossing web/roots web/pair web/absent \
+    web/absent_code tools/report/lesson; do
+    compile $source.c || { cat "$object.log"; exit 1; }
     own="$own $object"
 done
 $AR rc "$folder/library.a" $objects || exit 1

@@ -6,6 +6,7 @@
    steps turn a pair of imaginary eigenvalues into one real one.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "page.h"
+#include "lesson.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -115,7 +116,21 @@ PAGE_EXPORT(page_length) double page_length(const page *g, size_t i) {
 }
 
 /* As nevh_stability_limit; NAN where there is no such scheme. */
-PAGE_EXPORT(page_limit) double page_limit(const char *scheme) {
-    const nevh_integrator *x = nevh_integrator_named(scheme);
+PAGE_EXPORT(page_limit) double page_limit(page *g, const char *scheme) {
+    const nevh_integrator *x = nevh_scene_integrator_named(g->scene, scheme);
     return x ? nevh_stability_limit(x) : NAN;
+}
+
+/* The step and speed at which two schemes part, as JSON. */
+PAGE_EXPORT(page_lesson)
+const char *page_lesson(page *g, const char *kept, const char *other,
+                        const char *gradient) {
+    const char *names[] = {kept, other};
+    free(g->text);
+    g->text = malloc(LESSON_TEXT);
+    if (!g->text)
+        return "";
+    lesson_find(g->scene, names, 2, gradient, g->start, lesson_usual(g->scene),
+                400000 / (g->n + 1), g->text);
+    return g->text;
 }

@@ -23,6 +23,7 @@ static void *take(size_t count, size_t size) {
 }
 
 static void run_clear(page_run *r) {
+    nevh_sections_free(r->finder);
     nevh_stepper_free(r->stepper);
     nevh_energy_free(r->energy);
     free(r->state);
@@ -37,8 +38,10 @@ static void forget(page *g) {
     free(g->start);
     free(g->shown);
     free(g->text);
+    free(g->points);
     g->field = NULL;
-    g->start = g->shown = NULL;
+    g->start = g->shown = g->points = NULL;
+    g->n_points = 0;
     g->text = NULL;
 }
 
@@ -151,8 +154,18 @@ static double area(const page *g, const page_run *r, size_t by) {
     return sum;
 }
 
-/* One orbit has an energy and its error; many have their area instead, and its
-   change where every second orbit is left out. */
+/* Of one orbit, the energy error, and points of a section. */
+static int watch(void *run, size_t step, double t, const double q[],
+                 const double p[]) {
+    page_run *r = run;
+    if (!nevh_energy_observe(r->energy, r->steps + step, t, q, p))
+        r->state[PAGE_ERROR] = nevh_energy_error(r->energy, 0);
+    r->state[PAGE_MOST] = fmax(r->state[PAGE_MOST], fabs(r->state[PAGE_ERROR]));
+    return r->finder ? nevh_sections_observe(r->finder, step, t, q, p) : 0;
+}
+
+/* One orbit has an energy; many have their area instead, and its change where every
+   second orbit is left out. */
 static void observe(page *g, page_run *r) {
     double *q = r->state + PAGE_STATE, *p = q + g->n * r->width;
     double t = r->state[PAGE_T];
@@ -163,8 +176,6 @@ static void observe(page *g, page_run *r) {
     }
     if (nevh_field_value(g->field, 1, &t, q, p, &r->state[PAGE_ENERGY]))
         r->state[PAGE_ENERGY] = NAN;
-    if (!nevh_energy_observe(r->energy, r->steps, t, q, p))
-        r->state[PAGE_ERROR] = nevh_energy_error(r->energy, 0);
 }
 
 static int run_plan(page *g, page_run *r, const char *gradient,
@@ -219,7 +230,8 @@ int page_race(page *g, size_t slot, const char *scheme, const char *gradient,
     if (!r || !g->start || width < 1 || width > 4096 || k >= g->n)
         return page_fail(g, NEVH_EINVAL, "there is no such run");
     run_clear(r);
-    r->scheme = nevh_integrator_named(scheme);
+    r->scheme = nevh_scene_integrator_named(g->scene, scheme);
+    r->page = g;
     r->width = width;
     r->h = h;
     if (!r->scheme || !nevh_gradient_named(gradient))
@@ -244,6 +256,8 @@ int page_race(page *g, size_t slot, const char *scheme, const char *gradient,
     if (r->status)
         return run_clear(r), g->status;
     observe(g, r);
+    if (width == 1)
+        watch(r, 0, r->state[PAGE_T], z, z + g->n);
     return g->status = NEVH_OK;
 }
 
@@ -251,23 +265,27 @@ int page_race(page *g, size_t slot, const char *scheme, const char *gradient,
 static int step(page *g, page_run *r, size_t steps) {
     double *q = r->state + PAGE_STATE, *p = q + g->n * r->width;
     double t0 = g->run->t_start;
+    nevh_observer watcher = {.observe = watch, .data = r};
+    size_t watchers = r->width == 1;
     int status = NEVH_OK;
     if (nevh_integrator_own_time(r->scheme)) {
-        status =
-            nevh_run(r->stepper, r->state[PAGE_T], r->h, steps, q, p, NULL, 0);
+        status = nevh_run(r->stepper, r->state[PAGE_T], r->h, steps, q, p,
+                          &watcher, watchers);
         r->steps += nevh_stepper_taken(r->stepper);
         r->state[PAGE_T] = nevh_stepper_time(r->stepper);
         return status;
     }
     if (!g->balance) {
         double t = t0 + (double)r->steps * r->h;
-        status = nevh_run(r->stepper, t, r->h, steps, q, p, NULL, 0);
+        status = nevh_run(r->stepper, t, r->h, steps, q, p, &watcher, watchers);
         r->steps += nevh_stepper_taken(r->stepper);
     }
     for (size_t i = 0; g->balance && !status && i < steps; i++) {
         double t = t0 + (double)r->steps * r->h;
         status = nevh_stepper_apply(r->stepper, t, r->h, q, p);
         r->steps += !status;
+        if (!status && watchers)
+            status = watch(r, 0, t0 + (double)r->steps * r->h, q, p);
     }
     r->state[PAGE_T] = t0 + (double)r->steps * r->h;
     return status;
@@ -282,12 +300,13 @@ int page_advance(page *g, size_t slot, size_t steps) {
         return NEVH_EINVAL;
     if (r->status)
         return r->status;
+    r->state[PAGE_MOST] = 0;
+    g->n_points = 0;
     r->status = step(g, r, steps);
     if (r->status)
         page_fail(g, r->status, "%s stopped at t = %.6g: %s",
                   nevh_integrator_name(r->scheme), r->state[PAGE_T],
                   nevh_stepper_message(r->stepper));
-    r->state[PAGE_STATUS] = r->status;
     observe(g, r);
     return r->status;
 }

@@ -10,7 +10,7 @@
 
 #include <nevh/nevh.h>
 
-enum { PAGE_RUNS = 10, PAGE_MESSAGE = 2000 };
+enum { PAGE_RUNS = 24, PAGE_MESSAGE = 2000, PAGE_POINTS = 4096 };
 
 /* One scheme, in one slot of the page. */
 typedef struct {
@@ -19,14 +19,19 @@ typedef struct {
     nevh_energy *energy;
     double h;
     size_t width, steps; /* orbits side by side; steps taken */
-    double *state;       /* t, energy, its error, status, 2n x width */
+    double
+        *state; /* t, energy, its error, the largest |error| of the steps that
+                      were taken last, 2n x width */
     int status;
+    nevh_sections *finder; /* NULL: no section is looked at */
+    size_t section;        /* its number in the scene */
+    struct page *page;
 } page_run;
 
 /* What a state begins with. */
-enum { PAGE_T, PAGE_ENERGY, PAGE_ERROR, PAGE_STATUS, PAGE_STATE };
+enum { PAGE_T, PAGE_ENERGY, PAGE_ERROR, PAGE_MOST, PAGE_STATE };
 
-typedef struct {
+typedef struct page {
     nevh_scene *scene;
     const nevh_system
         *system; /* the scene's, for as long as it is not changed */
@@ -38,6 +43,8 @@ typedef struct {
     char *text;    /* the same, as JSON */
     nevh_field *field;
     page_run runs[PAGE_RUNS];
+    double *points; /* pairs: those of the section in the last steps */
+    size_t n_points;
     int status;
     char message[PAGE_MESSAGE];
 } page;

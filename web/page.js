@@ -8,6 +8,7 @@ const asked = new URLSearchParams(location.hash.slice(1)).get("scene");
 const given = all.find((one) => one.name === asked) || all[0];
 const PATIENCE = 5000; // milliseconds until a request is given up
 const TRAIL = 3000, PATH = 800;
+const SHOWN = 30; // seconds that the pictures have room for from the first on
 const now = () => performance.now();
 
 // ---- the worker ----
@@ -55,18 +56,27 @@ function ask(request) {
 const S = {
   text: given.text, dt: given.dt || 0, schemes: given.integrators || [],
   gradient: (given.gradients || [""])[0], changes: given.changes || [],
-  exact: false, disc: false, plane: 0, speed: 0, start: null,
+  exact: false, disc: false, plane: 0, speed: 0, start: null, section: -1, wall: false,
 };
+// Without settings, the page opens where the schemes part.
+let lesson = given.lesson || null;
+function takeLesson() {
+  if (!S.schemes.length) S.schemes = lesson.schemes.slice();
+  Object.assign(S, { dt: lesson.dt, speed: lesson.faster });
+}
+if (lesson) takeLesson();
 let scene = null, list = [], rows = [], pictures = [], results = [];
 let histories = [], trails = [], paths = [], playing = false, held = false, busy = false, due = 0;
-let limiting = 0, pulling = false, levels = null, seen = null, phaseBox = null, steps = 0, last = 0;
+let limiting = 0, ahead = [], extent = null, pulling = false, levels = null, seen = null, phaseBox = null, steps = 0, last = 0;
 
 function readFragment() {
   const from = new URLSearchParams(location.hash.slice(1));
   const has = (name, use) => from.getAll(name).forEach(use);
-  has("text", (v) => { S.text = v; });
-  has("dt", (v) => { S.dt = +v > 0 ? +v : 0; });
+  has("text", (v) => { S.text = v; lesson = null; });
+  has("dt", (v) => { S.dt = +v > 0 ? +v : 0; S.speed = 0; });
   has("integrators", (v) => { S.schemes = v.split(",").slice(0, 4); });
+  has("wall", () => { S.wall = true; });
+  has("section", (v) => { S.section = parseInt(v, 10); });
   has("gradient", (v) => { S.gradient = v; });
   has("exact", () => { S.exact = true; });
   has("disc", () => { S.disc = true; });
@@ -85,9 +95,10 @@ function fragment() {
   to.append("dt", S.dt);
   to.append("integrators", S.schemes.join(","));
   to.append("gradient", S.gradient);
-  for (const flag of ["exact", "disc"]) if (S[flag]) to.append(flag, "1");
+  if (S.section >= 0) to.append("section", S.section);
+  for (const flag of ["exact", "disc", "wall"]) if (S[flag]) to.append(flag, "1");
   if (S.plane) to.append("plane", S.plane);
-  if (S.speed) to.append("speed", S.speed);
+  if (S.speed || given.lesson?.faster) to.append("speed", S.speed);
   const names = { "+": "with", "-": "without", "=": "set", "@": "start" };
   for (const [mark, what] of changes())
     to.append(names[mark], what.replace("=", ":"));
@@ -121,22 +132,28 @@ async function open(text, list) {
   const answer = await ask({ ask: "open", name: given.name, text,
     changes: list });
   sayWrong(answer.ok ? "" : answer.message);
-  return answer;
+  if (!answer.ok) return answer;
+  opened = withSection(text, answer.scene);
+  return opened === text ? answer
+    : ask({ ask: "open", name: given.name, text: opened, changes: list });
 }
+let opened = ""; // the text that the worker has
 // Takes a scene, or says what is wrong with it and keeps the one before.
-async function use(text, list) {
+// wanted: a scheme of it that is to run.
+async function use(text, list, wanted = []) {
   held = true;
   clearTimeout(limiting);
   await quiet();
   const answer = await open(text, list);
   if (!answer.ok) {
-    if (scene) await ask({ ask: "open", name: given.name, text: S.text,
+    if (scene) await ask({ ask: "open", name: given.name, text: opened,
       changes: S.changes });
     if (scene) await race();
     held = false;
     return false;
   }
-  Object.assign(S, { text, changes: list, start: null });
+  Object.assign(S, { text, changes: list, start: null,
+    schemes: S.schemes.concat(wanted).slice(-4) });
   scene = answer.scene;
   settle();
   S.limit = S.limited = 0;
@@ -150,13 +167,14 @@ async function use(text, list) {
 // Settings that a scene asks for, where none are given.
 function settle() {
   const run = scene.run, known = new Set(scene.integrators.map((i) => i.name));
-  if (!S.dt) S.dt = Math.min(...run.dt.length ? run.dt : [0.01]);
-  S.schemes = S.schemes.filter((name) => known.has(name));
+  if (!S.dt) S.dt = run.step;
+  S.schemes = [...new Set(S.schemes)].filter((name) => known.has(name));
   if (!S.schemes.length)
     S.schemes = contrast(run.integrators.filter((name) => known.has(name)));
   if (!S.schemes.length) S.schemes = ["midpoint", "rk4"];
   if (!S.gradient) S.gradient = run.gradients[0] || "central4";
   S.plane = Math.min(S.plane, scene.coordinates.length - 1);
+  if (!scene.sections[S.section]) S.section = -1;
 }
 // The first, and one that is not symplectic.
 function contrast(names) {
@@ -164,17 +182,12 @@ function contrast(names) {
     i.name === name && i.symplectic === "no"));
   return other && other !== names[0] ? [names[0], other] : names.slice(0, 2);
 }
-// Of the orbit, in one second: in real time where that is known; else as much as shows
-// the scene's run, which is many turns, in 400 s, by 40 to 600 of its steps.
-function seconds() {
-  const h = scene.run.dt[0] || S.dt, run = scene.run.t_end - scene.run.t_start;
-  const usual = Math.max(40 * h, Math.min(600 * h, run / 400 || 0));
-  return (scene.t_label === "s" ? 1 : usual) * 2 ** S.speed;
-}
+// Of the orbit, in one second.
+const seconds = () => scene.run.rate * 2 ** S.speed;
 
 // The longest step that the schemes are stable with, which is the slider's end.
 async function findLimit() {
-  const h = Math.min(...scene.run.dt.length ? scene.run.dt : [S.dt]);
+  const h = scene.run.step;
   const { ok, steps } = await ask({ ask: "limit", h, schemes: S.schemes });
   const finite = ok ? steps.filter((v) => v > 0 && Number.isFinite(v)) : [];
   S.limit = Math.max(finite.length ? Math.min(...finite) : 8 * h, S.dt);
@@ -197,7 +210,13 @@ async function race() {
   if (!answer.ok) { at("message").textContent = answer.message; return; }
   steps = 0;
   due = 0;
-  if (!pulling) phaseBox = seen = levels = null;
+  if (!pulling) {
+    const { ok, found } = await ask({ ask: "ahead", list: list.filter((r) =>
+      !(r.width > 1)), steps: Math.ceil(SHOWN * seconds() / S.dt), start: S.start });
+    ahead = ok ? found : [];
+    phaseBox = seen = levels = errorBox = null;
+    await findExtent();
+  }
   profile = 1e-9;
   histories = list.map(() => new NevhHistory());
   trails = list.map(() => []);
@@ -205,8 +224,13 @@ async function race() {
   take(answer);
   results.forEach((r, i) => { list[i].area = rows[i]?.[1]; });
   pictures.forEach(widen);
+  if (range() && !pulling) reachAhead(range());
+  showTries();
   report(true);
+  await restartSection();
 }
+// What the first scheme will reach, where it does not run away.
+const range = () => ahead[0] && ahead[0].error < 1 ? ahead[0] : null;
 function take(answer) {
   results = answer.runs;
   rows = answer.states;
@@ -223,7 +247,8 @@ function take(answer) {
 function sample(i, row) {
   if (list[i].width > 1) return;
   const n = scene.coordinates.length, trail = trails[i];
-  histories[i].add(row[0], row[2], row[4 + S.plane], row[4 + n + S.plane]);
+  histories[i].add(row[0], Math.max(row[3], Math.abs(row[2])), row[4 + S.plane],
+    row[4 + n + S.plane]);
   trail.push(row[4 + S.plane], row[4 + n + S.plane]);
   if (trail.length > 2 * TRAIL) trail.splice(0, trail.length - 2 * TRAIL);
   for (let j = 0; j < scene.bobs && row.length > 4 + 2 * n; j++) {
@@ -276,7 +301,10 @@ function frame(time) {
       });
     }
   }
-  if (scene && list.length) draw();
+  if (scene && list.length) {
+    turnSection();
+    draw();
+  }
   frames++;
   requestAnimationFrame(frame);
 }

@@ -18,11 +18,12 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change",
   () => nevhColours.clear());
 
 // A canvas with a box [x0, x1, y0, y1] of the plane.
+let nevhType = 1; // times usual letters
 class NevhPlane {
   constructor(canvas, margins) {
     this.canvas = canvas;
     this.pen = canvas.getContext("2d");
-    [this.left, this.bottom, this.right, this.top] = margins;
+    this.margins = margins;
     this.box = [-1, 1, -1, 1];
   }
   // Begins a drawing.  `alike`: both directions have one unit.
@@ -35,6 +36,8 @@ class NevhPlane {
       Object.assign(this.canvas, { width: w, height: h });
     this.pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     this.pen.clearRect(0, 0, at.width, at.height);
+    [this.left, this.bottom, this.right, this.top] =
+      this.margins.map((margin) => margin * nevhType);
     this.width = at.width - this.left - this.right;
     this.height = at.height - this.top - this.bottom;
     const [x0, x1, y0, y1] = this.box;
@@ -77,8 +80,8 @@ class NevhPlane {
     }
     pen.stroke();
   }
-  mark(x, y, i, size) {
-    const pen = this.pen, a = this.x(x), b = this.y(y);
+  mark(x, y, i, usual) {
+    const pen = this.pen, a = this.x(x), b = this.y(y), size = usual * nevhType;
     pen.beginPath();
     if (i % 4 === 1) pen.rect(a - size, b - size, 2 * size, 2 * size);
     else if (i % 4 === 2) {
@@ -97,7 +100,7 @@ class NevhPlane {
   axes(xs, ys, xlabel, ylabel, yText) {
     const pen = this.pen, bottom = this.top + this.height;
     pen.save();
-    pen.font = "12px system-ui,sans-serif";
+    pen.font = 12 * nevhType + "px system-ui,sans-serif";
     pen.fillStyle = pen.strokeStyle = this.fore;
     pen.globalAlpha = 0.75;
     pen.lineWidth = 1;
@@ -108,7 +111,7 @@ class NevhPlane {
       pen.fillText(nevhNumber(v, xs), this.x(v), bottom + 5);
       pen.fillRect(this.x(v), bottom, 1, 4);
     }
-    pen.fillText(xlabel, this.left + this.width / 2, bottom + 19);
+    pen.fillText(xlabel, this.left + this.width / 2, bottom + 5 + 14 * nevhType);
     pen.textAlign = "right";
     pen.textBaseline = "middle";
     for (const v of ys) {
@@ -117,7 +120,7 @@ class NevhPlane {
     }
     pen.textAlign = "left";
     pen.textBaseline = "bottom";
-    pen.fillText(ylabel, 4, this.top - 9);
+    pen.fillText(ylabel, 4, this.top - 9 * nevhType);
     pen.restore();
     pen.beginPath();
     pen.rect(this.left, this.top, this.width, this.height);
@@ -166,6 +169,22 @@ function nevhContour(values, nx, ny, box, level) {
           x0 + cut[k + 2] * dx, y0 + cut[k + 3] * dy);
     }
   return out;
+}
+
+// The largest value in each of so many spans of a range of times and in the five spans
+// before it: [time, value, ...].
+function nevhSpans(t, values, from, to, count) {
+  const out = [], by = (to - from) / count;
+  let span = -1;
+  for (let i = 0; i < t.length; i++) {
+    const here = Math.floor((t[i] - from) / by);
+    if (here !== span) out.push(t[i], values[i]);
+    else out[out.length - 1] = Math.max(out[out.length - 1], values[i]);
+    span = here;
+  }
+  const most = out.filter((_, i) => i % 2);
+  return out.map((v, i) => i % 2
+    ? Math.max(...most.slice(Math.max(0, (i - 11) / 2), (i + 1) / 2)) : v);
 }
 
 // The largest |error| in each of at most 1200 spans of time, and the state in the

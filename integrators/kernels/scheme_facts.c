@@ -152,9 +152,9 @@ int nevh_integrator_facts(const nevh_integrator *scheme,
 static void print_due(long double due, char text[], size_t size) {
     long double below = roundl(1 / due);
     if (due > 0 && fabsl(due * below - 1) < 1e-12L)
-        snprintf(text, size, below > 1 ? "1/%.0Lf" : "1", below);
+        snprintf(text, size, below > 1 ? "1/%.0f" : "1", (double)below);
     else
-        nevh__print(text, size, "%.9Lg", due);
+        nevh__print(text, size, "%.9g", (double)due);
 }
 
 /* A wrong number breaks a condition of low order; those of higher orders are nearly
@@ -175,9 +175,9 @@ const char *nevh_scheme_shortfall(const nevh_scheme_facts *x, char text[],
         return text;
     print_due(x->due, due, sizeof due);
     if (is_suspicious(x))
-        nevh__print(off, sizeof off, " (off by %.2Lg: a digit may be wrong)",
-                    x->value - x->due);
-    nevh__print(text, size, "%s is %.9Lg, %s is needed for order %d%s",
-                x->condition, x->value, due, x->needed_for, off);
+        nevh__print(off, sizeof off, " (off by %.2g: a digit may be wrong)",
+                    (double)(x->value - x->due));
+    nevh__print(text, size, "%s is %.9g, %s is needed for order %d%s",
+                x->condition, (double)x->value, due, x->needed_for, off);
     return text;
 }

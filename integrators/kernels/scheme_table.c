@@ -73,9 +73,10 @@ static bool check_finite(char list, size_t count, const long double x[],
 static void print_sum(long double sum, char text[], size_t size) {
     long double off = sum - 1;
     if (fabsl(off) < 1e-10L)
-        nevh__print(text, size, "1 %c %.2Lg", off < 0 ? '-' : '+', fabsl(off));
+        nevh__print(text, size, "1 %c %.2g", off < 0 ? '-' : '+',
+                    (double)fabsl(off));
     else
-        nevh__print(text, size, "%.12Lg", sum);
+        nevh__print(text, size, "%.12g", (double)sum);
 }
 
 static bool check_sum(const char *what, char list, size_t count,
@@ -260,8 +261,8 @@ static bool take_nodes(own_scheme *x, size_t s, const long double *c,
         }
         if (c && !any && !(fabsl(rows[i] - c[i]) <= 2 * NEVH__DIGITS * size))
             return fail(e, 'c', i,
-                        "row %zu of a adds up to %.12Lg, but c_%zu is %.12Lg",
-                        i + 1, rows[i], i + 1, c[i]);
+                        "row %zu of a adds up to %.12g, but c_%zu is %.12g",
+                        i + 1, (double)rows[i], i + 1, (double)c[i]);
         rows[i] = c ? c[i] : rows[i];
     }
     return true;

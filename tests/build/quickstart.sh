@@ -158,4 +158,15 @@ exits 0
 says 'without gnuplot: --plot takes FILE.svg alone'
 never apt-get
 has '^table of pendulum$'
+
+# Without a compiler for WebAssembly, one line tells what the live page needs; tarballs
+# have it.
+mkdir -p "$work/clone/web"
+echo 'page_packages = clang lld' >"$work/clone/web/local.mk"
+echo 'S["HAVE_KIT_TRUE"]="#"' >"$work/clone/build/config.status"
+exits 0
+says '^quickstart: without nevh page; for it: apt-get install clang lld$'
+touch "$work/clone/web/kit.html"
+exits 0
+grep -q 'nevh page' "$work/err" && fails 'asks for what is there'
 exit $status

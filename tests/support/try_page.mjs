@@ -239,14 +239,14 @@ await tried("kapitza", "", async (page) => {
   await page.evaluate("setPlaying(false); quiet()");
   // The next frame draws the last states.
   check(await page.until("configuration.box[1] >= rows[0][0] && " +
-    "configuration.box[2] > 2.8 && configuration.box[3] < 3.5", 10),
+    "configuration.box[2] > 2.8 && configuration.box[3] < 3.5"),
   "does not draw phi against time");
-  check(await page.until("phaseBox[0] > Math.PI/2 && phaseBox[1] < 3*Math.PI/2", 10),
+  check(await page.until("phaseBox[0] > Math.PI/2 && phaseBox[1] < 3*Math.PI/2"),
     "the plane does not show the top");
   // A box that is asked for while the levels of another are made.
   await page.evaluate(`askLevels(phaseBox.slice()); phaseBox[3] += 100;
     askLevels(phaseBox.slice())`);
-  check(await page.until("!asking && levels.some((v, i) => i % 2 && v > 50)", 20),
+  check(await page.until("!asking && levels.some((v, i) => i % 2 && v > 50)"),
     "no levels of the later box");
   check(await page.evaluate("!at('scenes').checkVisibility()"),
     "offers scenes where there is one");
@@ -258,7 +258,7 @@ await tried("kapitza", "", async (page) => {
   check(await page.until("at('shared').textContent", 10), "does not say what it shares");
 });
 // A turn takes some seconds, also where steps are short.
-await tried("kepler-0.9", "", async (page) => {
+await tried("kepler-0.9", "speed=0", async (page) => {
   check(await page.until("steps > 5"), "nothing moves");
   const turn = await page.evaluate("2 * Math.PI / seconds()");
   check(turn > 2 && turn < 8, "a turn takes " + turn + " s");

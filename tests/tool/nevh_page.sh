@@ -69,6 +69,6 @@ cp $page $work/first.html
 exits 0 page pendulum -o $page
 cmp -s $page $work/first.html || fails "differs from run to run"
 size=$(wc -c <$page)
-test $size -le 256000 || fails "is of $size bytes"
+test $size -le 300000 || fails "is of $size bytes"
 
 exit $status

@@ -4,13 +4,14 @@
    the scene goes, as JSON.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
+#include "lesson.h"
 #include "report_private.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_SCHEMES = 4 };
+enum { MOST_SCHEMES = 4, MOST_STEPS = 3000000 };
 static const char mark[] = "@SCENE@\n";
 
 /* A string of JSON that no end of an element can be in. */
@@ -49,8 +50,27 @@ static void put_starts(FILE *f, const options *o) {
     fputc(']', f);
 }
 
+/* The step and the speed at which the schemes part, where none is given. */
+static void put_lesson(FILE *f, const options *o, nevh_scene *scene) {
+    const nevh_scene_run *run = nevh_scene_run_settings(scene);
+    const list *names = &o->integrators;
+    size_t n = nevh_scene_dof(scene);
+    double *start = tool_allocate(2 * n, sizeof *start);
+    char text[LESSON_TEXT];
+    nevh_scene_start(scene, start, start + n);
+    lesson_find(scene,
+                names->count ? (const char *const *)names->item
+                             : run->integrator,
+                names->count ? names->count : run->integrators,
+                o->gradients.count ? o->gradients.item[0] : NULL, start,
+                lesson_usual(scene), MOST_STEPS / (n + 1), text);
+    fprintf(f, ",\"lesson\":%s", text);
+    free(start);
+}
+
 static void put_scene(FILE *f, const options *o, const char *name,
-                      const char *text, double dt) {
+                      nevh_scene *scene, double dt) {
+    char *text = tool_owned(nevh_scene_write(scene, NULL));
     fputs("{\"name\":", f);
     put_string(f, name);
     fputs(",\"text\":", f);
@@ -60,7 +80,10 @@ static void put_scene(FILE *f, const options *o, const char *name,
     put_list(f, "gradients", &o->gradients);
     if (o->dt.count)
         fprintf(f, ",\"dt\":%.17g", dt);
+    else
+        put_lesson(f, o, scene);
     fputc('}', f);
+    free(text);
 }
 
 /* The page has neither GSL nor transforms of time. */
@@ -72,7 +95,7 @@ static int check_schemes(const options *o) {
                            MOST_SCHEMES);
     for (size_t i = 0; i < o->integrators.count; i++) {
         const char *name = o->integrators.item[i];
-        if (strncmp(name, "gsl-", 4) == 0 || strncmp(name, "tao", 3) == 0)
+        if (!lesson_has(name))
             return tool_refuse("%s needs GSL, which a page does not have",
                                name);
         if (strchr(name, '+'))
@@ -134,11 +157,8 @@ static int add_scene(FILE *f, const options *o, const char *name) {
         status = scene_number(scene, o, o->dt.item[0], &dt);
     if (!status && o->dt.count && !(dt > 0 && isfinite(dt)))
         status = tool_refuse("--dt: %s is no step", o->dt.item[0]);
-    if (!status) {
-        char *text = tool_owned(nevh_scene_write(scene, NULL));
-        put_scene(f, o, name, text, dt);
-        free(text);
-    }
+    if (!status)
+        put_scene(f, o, name, scene, dt);
     nevh_scene_free(scene);
     return status ? TOOL_USAGE : TOOL_OK;
 }

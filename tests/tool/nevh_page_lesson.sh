@@ -1,0 +1,34 @@
+#!/bin/sh
+# Live pages open where the schemes part: within half a minute, or they say why not.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+test -f web/kit.html || test -f "$srcdir/web/kit.html" || {
+    echo "there is no web/kit.html: make page was not run"
+    exit 77
+}
+command -v node >/dev/null 2>&1 || {
+    echo "the page's module is run with node, which is not here"
+    exit 77
+}
+pages=
+for scene in pendulum kepler henon-heiles elastic-pendulum coupled-pendulums; do
+    exits 0 page $scene -o $work/$scene.html
+    pages="$pages $work/$scene.html"
+done
+# Friction: none of the schemes keeps what it takes.
+exits 0 page damped-driven-pendulum -o $work/damped.html
+cp $work/damped.html $work/out
+has '"lesson":{"why":[1-3],'
+# Settings that are given stay.
+exits 0 page pendulum --dt 0.05 -o $work/given.html
+cp $work/given.html $work/out
+has '"dt":0\.05'
+lacks '"lesson":'
+command="page, its first half minute"
+# The names have no blanks.
+# shellcheck disable=SC2086
+$limit node "$srcdir/tests/support/try_lesson.mjs" $pages >$work/tried 2>&1 ||
+    fails "is wrong"
+cat $work/tried
+exit $status
