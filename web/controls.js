@@ -27,8 +27,6 @@ function show() {
       ? ": drag a body to a new start." : ".") : names.length === 1 ? names[0] + " against time."
     : "All coordinates, side by side.";
   showView();
-  at("scene").setAttribute("aria-label", "The configuration, by scheme");
-  at("error").setAttribute("aria-label", "Energy errors against time");
   showEffects();
   showSchemes();
   at("plane").replaceChildren(...scene.coordinates.map((c, k) =>
@@ -90,6 +88,14 @@ function showEffects() {
   at("effects").replaceChildren(...fields);
   at("parameters").replaceChildren(...numbers);
 }
+// The mark of a scheme, in its colour.
+function letterOf(name) {
+  const look = name === "exact" ? -1 : nevhLook(name || "");
+  const made = element("span", { className: "mark" }, !name ? "" : look < 0 ? "○"
+    : NEVH_MARKS[look % NEVH_MARKS.length]);
+  made.style.color = nevhColour(look);
+  return made;
+}
 function showSchemes() {
   const many = S.schemes.length;
   const choose = (i) => {
@@ -106,17 +112,11 @@ function showSchemes() {
       showSchemes();
       race().then(findLimit);
     };
-    const mark = element("span", { className: "mark" }, NEVH_MARKS[i]);
-    mark.style.color = nevhColour(i);
+    const mark = letterOf(S.schemes[i]);
     return element("label", {}, mark, menu);
   };
-  const marked = [...S.schemes.map((name, i) => [NEVH_MARKS[i], name, i]),
-    ...S.exact ? [["○", "exact", -1]] : []];
-  at("legend").replaceChildren(...marked.flatMap(([mark, name, i]) => {
-    const made = element("span", {}, mark);
-    made.style.color = nevhColour(i);
-    return [made, " " + name + " "];
-  }));
+  at("legend").replaceChildren(...[...S.schemes, ...S.exact ? ["exact"] : []]
+    .flatMap((name) => [letterOf(name), " " + name + " "]));
   at("schemes").replaceChildren(...Array.from({ length: Math.min(4, many + 1) },
     (_, i) => choose(i)));
 }

@@ -16,14 +16,14 @@ function reach(x, y) {
 }
 // Room for all that a run will show, and which bodies will stay where they are.
 let still = [];
-function reachAhead({ low, high }) {
+function reachAhead({ low, high, whole }) {
   const n = scene.coordinates.length;
   still = [];
   for (let j = 0; j < scene.bobs; j++) {
     const [x0, y0] = low.slice(2 * n + 2 * j), [x1, y1] = high.slice(2 * n + 2 * j);
     reach(x0, y0);
     reach(x1, y1);
-    still.push(x0 === x1 && y0 === y1);
+    still.push(whole && x0 === x1 && y0 === y1);
   }
 }
 function widen(picture) {
@@ -103,10 +103,11 @@ function drawMotion() {
   pen.restore();
 }
 const later = (from, to) => to + 0.03 * (to - from); // of the last mark
+const dashOf = (look) => look < 0 ? [4, 4] : NEVH_DASHES[look % 5];
 function dashed(pen, i) {
   pen.strokeStyle = pen.fillStyle = nevhColour(list[i].colour);
   pen.lineWidth = 1.6;
-  pen.setLineDash(list[i].colour < 0 ? [4, 4] : NEVH_DASHES[i % 4]);
+  pen.setLineDash(dashOf(list[i].colour));
 }
 // All coordinates, side by side.
 function drawProfile() {
@@ -139,7 +140,7 @@ function drawParts(pen, i) {
   pen.strokeStyle = pen.fillStyle = nevhColour(colour);
   pen.globalAlpha = i === 0 ? 1 : 0.75;
   pen.lineWidth = i === 0 ? 3 : 2;
-  pen.setLineDash(colour < 0 ? [4, 4] : NEVH_DASHES[i % 4]);
+  pen.setLineDash(dashOf(colour));
   let from = 0, bob = 0;
   for (const part of scene.parts) {
     const v = picture.subarray(from, from + part.count);
@@ -347,17 +348,15 @@ function report(atOnce) {
   for (let i = 0; i < lines; i++) {
     const cells = body.rows[i].cells, row = rows[i], r = list[i];
     const disc = list.findIndex((o) => o.width > 1 && o.scheme === r.scheme);
-    const mark = r.colour < 0 ? "○" : NEVH_MARKS[i];
-    const name = r.colour < 0 ? " exact" : " " + r.scheme;
-    const values = [mark + name, row ? digits(row[1], 9) : "",
+    const name = r.colour < 0 ? "exact" : r.scheme, mark = letterOf(name);
+    const values = [mark.textContent + " " + name, row ? digits(row[1], 9) : "",
       row ? row[2].toExponential(2) : "refused",
       ahead[i] ? ahead[i].error.toExponential(1) : "",
       disc >= 0 && rows[disc] ? areaText(rows[disc], list[disc].area) : ""];
     values.forEach((v, j) => {
       if (cells[j].textContent !== v) j ? cells[j].textContent = v
-        : cells[0].replaceChildren(element("span", {}, mark), name);
+        : cells[0].replaceChildren(mark, " " + name);
     });
-    cells[0].firstChild.style.color = nevhColour(r.colour);
   }
   if (!atOnce && now() - written < 250) return;
   showTitle();

@@ -108,7 +108,7 @@ function nevhEngine(send) {
       x.page_race(page, slot, scheme, gradient, r.h, r.tolerance || 1e-9,
         r.width || 1, r.k || 0, dq, dp));
 
-  // What runs will reach in some steps: [least, largest] of each number of the state
+  // What runs will reach in some steps, or in as many as a moment lets them: [least, largest] of each number of the state
   // and of what is drawn of it, and the largest error.
   function ahead({ list, steps, start }) {
     if (start) numbers(x.page_start(page), 2 * n).set(start);
@@ -116,8 +116,9 @@ function nevhEngine(send) {
     const every = Math.max(1, Math.floor(most / 1000));
     const found = list.map((r) => {
       if (enter(AHEAD, r)) return null;
-      let low = null, high = null, error = 0, failed = 0;
-      for (let done = 0; done < most && !failed; done += every) {
+      const began = performance.now();
+      let low = null, high = null, error = 0, failed = 0, done = 0;
+      for (; done < most && !failed && performance.now() - began < 150; done += every) {
         const row = state(AHEAD, 1), seen = observed(row);
         low = low ? low.map((v, i) => Math.min(v, seen[i])) : [...seen];
         high = high ? high.map((v, i) => Math.max(v, seen[i])) : [...seen];
@@ -125,7 +126,7 @@ function nevhEngine(send) {
         failed = x.page_advance(page, AHEAD, every);
       }
       return { low: low.slice(4), high: high.slice(4), error, failed,
-        t: state(AHEAD, 1)[0] };
+        whole: done >= most, t: state(AHEAD, 1)[0] };
     });
     x.page_leave(page, AHEAD);
     return { ok: true, found };

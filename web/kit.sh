@@ -52,9 +52,12 @@ short() {
     sed 's/^ *//; /^\/\//d' "$@"
 }
 short "$folder/engine.js" | gzip -9 -n | packed engine || exit 1
-short "$folder/view.js" "$folder/page.js" "$folder/draw.js" \
-    "$folder/section.js" "$folder/try.js" \
-    "$folder/controls.js" | gzip -9 -n | packed scripts || exit 1
+scripts() {
+    awk -f "$folder/looks.awk" "$folder/../tools/plot/looks.h"
+    short "$folder/view.js" "$folder/page.js" "$folder/draw.js" \
+        "$folder/section.js" "$folder/try.js" "$folder/controls.js"
+}
+scripts | gzip -9 -n | packed scripts || exit 1
 printf '<script>\n'
 cat "$folder/unpack.js" || exit 1
 printf '</script>\n</body>\n</html>\n'

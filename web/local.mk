@@ -4,7 +4,7 @@ page_sources = web/page.h web/page.c web/describe.c web/pace.c web/crossing.c we
 	web/absent_code.c
 page_parts = web/page.css web/page.html web/unpack.js web/engine.js web/view.js web/page.js web/draw.js web/section.js web/try.js \
 	web/controls.js
-page_scripts = web/module.sh web/kit.sh web/gallery.sh
+page_scripts = web/module.sh web/kit.sh web/looks.awk web/gallery.sh
 EXTRA_DIST += $(page_sources) $(page_parts) $(page_scripts)
 
 page_packages = clang lld llvm wasi-libc libclang-rt-dev-wasm32 zopfli
@@ -13,7 +13,8 @@ page_packages = clang lld llvm wasi-libc libclang-rt-dev-wasm32 zopfli
 if HAVE_KIT
 page: web/kit.html
 web/kit.html: web/local.mk $(page_sources) $(page_parts) $(page_scripts) \
-  tools/report/lesson.c tools/report/lesson.h $(libnevh_core_la_SOURCES)
+  tools/report/lesson.c tools/report/lesson.h tools/plot/looks.h \
+  $(libnevh_core_la_SOURCES)
 	$(AM_V_GEN)$(MKDIR_P) web/objects
 	$(AM_V_at)CC='$(WASM_CC)' AR='$(WASM_AR)' WASM_SYSROOT='$(WASM_SYSROOT)' \
 	  GSL_INCLUDE='$(GSL_INCLUDE)' $(SHELL) $(srcdir)/web/module.sh \

@@ -200,20 +200,24 @@ async function findLimit() {
 async function race() {
   await quiet();
   const one = { gradient: S.gradient, h: S.dt };
-  list = S.schemes.map((scheme, i) => ({ ...one, scheme, colour: i }));
+  list = S.schemes.map((scheme) => ({ ...one, scheme, colour: nevhLook(scheme) }));
   if (S.exact)
     list.push({ ...one, scheme: "taylor", tolerance: 1e-16, colour: -1 });
   if (S.disc)
-    S.schemes.forEach((scheme, i) => list.push({ ...one, scheme, colour: i,
+    S.schemes.forEach((scheme) => list.push({ ...one, scheme, colour: nevhLook(scheme),
       width: 256, k: S.plane }));
   const answer = await ask({ ask: "race", list, start: S.start });
   if (!answer.ok) { at("message").textContent = answer.message; return; }
   steps = 0;
   due = 0;
   if (!pulling) {
-    const { ok, found } = await ask({ ask: "ahead", list: list.filter((r) =>
+    const { ok, found, broken } = await ask({ ask: "ahead", list: list.filter((r) =>
       !(r.width > 1)), steps: Math.ceil(SHOWN * seconds() / S.dt), start: S.start });
     ahead = ok ? found : [];
+    if (broken) {
+      await open(S.text, S.changes);
+      await ask({ ask: "race", list, start: S.start });
+    }
     phaseBox = seen = levels = errorBox = null;
     await findExtent();
   }

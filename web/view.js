@@ -3,19 +3,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 "use strict";
 
-const NEVH_MARKS = ["●", "■", "▲", "◆"];
-const NEVH_DASHES = [[], [8, 4], [3, 3], [10, 3, 2, 3]];
-
-function nevhColour(i) {
-  const name = i === "fore" ? "--fore" : i < 0 ? "--ghost" : "--c" + i % 4;
+// A look is a number: of the integrator in the table of pictures, or of its name.
+const NEVH_DASHES = [[], [12, 5], [3, 3], [14, 4, 3, 4], [20, 6]];
+function nevhLook(name) {
+  const known = NEVH_LOOKS.indexOf(name);
+  let number = 2166136261;
+  for (const byte of new TextEncoder().encode(name))
+    number = Math.imul(number ^ byte, 16777619) >>> 0;
+  return known >= 0 ? known : NEVH_LOOKS.length + number % 64;
+}
+const nevhDark = matchMedia("(prefers-color-scheme: dark)");
+function nevhColour(look) {
+  if (look >= 0) return NEVH_COLOURS[look % NEVH_COLOURS.length][+nevhDark.matches];
+  const name = look === "fore" ? "--fore" : "--ghost";
   if (!nevhColours.has(name)) nevhColours.set(name, getComputedStyle(
     document.documentElement).getPropertyValue(name).trim());
   return nevhColours.get(name);
 }
 // Looked up once, and again in another theme.
 const nevhColours = new Map();
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change",
-  () => nevhColours.clear());
+nevhDark.addEventListener("change", () => nevhColours.clear());
 
 // A canvas with a box [x0, x1, y0, y1] of the plane.
 let nevhType = 1; // times usual letters
@@ -80,22 +87,28 @@ class NevhPlane {
     }
     pen.stroke();
   }
-  mark(x, y, i, usual) {
+  mark(x, y, look, usual) {
     const pen = this.pen, a = this.x(x), b = this.y(y), size = usual * nevhType;
+    const letter = look < 0 ? "○" : NEVH_MARKS[look % NEVH_MARKS.length];
     pen.beginPath();
-    if (i % 4 === 1) pen.rect(a - size, b - size, 2 * size, 2 * size);
-    else if (i % 4 === 2) {
+    if ("■□".includes(letter)) pen.rect(a - size, b - size, 2 * size, 2 * size);
+    else if ("▲△".includes(letter)) {
       pen.moveTo(a, b - 1.2 * size);
       pen.lineTo(a + 1.2 * size, b + size);
       pen.lineTo(a - 1.2 * size, b + size);
-    } else if (i % 4 === 3) {
+    } else if ("◆◇".includes(letter)) {
       pen.moveTo(a, b - 1.4 * size);
       pen.lineTo(a + 1.4 * size, b);
       pen.lineTo(a, b + 1.4 * size);
       pen.lineTo(a - 1.4 * size, b);
+    } else if (letter === "×") {
+      pen.moveTo(a - size, b - size);
+      pen.lineTo(a + size, b + size);
+      pen.moveTo(a + size, b - size);
+      pen.lineTo(a - size, b + size);
     } else pen.arc(a, b, size, 0, 7);
-    pen.closePath();
-    i < 0 ? pen.stroke() : pen.fill();
+    if (letter !== "×") pen.closePath();
+    "●■▲◆".includes(letter) ? pen.fill() : pen.stroke();
   }
   axes(xs, ys, xlabel, ylabel, yText) {
     const pen = this.pen, bottom = this.top + this.height;
