@@ -109,6 +109,49 @@ await tried("pendulum", "", async (page) => {
       "does not recover from " + text.slice(0, 30));
   }
 });
+// The page opens on its lesson; a step that is typed is taken; a scheme of one's own runs
+// and is measured at once, and wrong weights are refused with the sum; a new name becomes
+// a parameter; the title says what was changed.
+await tried("pendulum", "", async (page) => {
+  check(await page.until("steps > 2 && at('lesson').textContent"), "no lesson");
+  check(await page.evaluate("S.dt === lesson.dt && /rk4 .*verlet/.test(lessonText())"),
+    "opens elsewhere");
+  check(await page.evaluate("errorBox[1] - errorBox[0] >= SHOWN * seconds() * 0.99 && " +
+    "phaseBox[3] > 6.2"), "axes have no room for half a minute, and the separatrix");
+  const mine = (weights) => page.evaluate(`(async () => { setPlaying(false);
+    at("weights").value = ${JSON.stringify(weights)}; await runMine();
+    return at("wrong-own").textContent; })()`);
+  check(/0\.8333/.test(await mine("kick = 1/6, 2/3\ndrift = 1/2, 1/2")), "takes wrong weights");
+  check(await mine("kick = 1/6, 2/3, 1/6\ndrift = 1/2, 1/2") === "", "refuses weights");
+  check(await page.until("/order 2, symplectic: yes.*energy error/.test(factsText())"),
+    "no facts: " + await page.evaluate("factsText()"));
+  check(await page.evaluate("!/own formulas/.test(titleText())"), "other formulas");
+  await page.evaluate(`(() => { document.querySelector("#effects input[name=gravity]").value =
+    "-m*g*l*cos(phi) + kk*phi^2/9"; at("formulas").requestSubmit(); })()`);
+  check(await page.until("!at('missing').hidden"), "offers no parameter");
+  await page.evaluate(`(() => { at("missing").querySelector("input").value = "0.5";
+    at("missing").requestSubmit(); })()`);
+  check(await page.until("/kk = 0.5/.test(S.text) && at('missing').hidden"), "no parameter kk");
+  check(await page.until("/own formulas/.test(document.title)"), "the title stays");
+  await page.evaluate(`(() => { at("dt-number").value = "0.0125";
+    at("dt-number").onchange(); at("wall").click(); })()`);
+  check(await page.until("S.dt === 0.0125 && rows.length > 0"), "takes no step");
+  check(await page.evaluate("getComputedStyle(at('effects').closest('.panels')).display")
+    === "none", "controls stay on the wall");
+});
+// A click in a section starts an orbit of the same energy; elsewhere there is none.
+await tried("henon-heiles", "section=0", async (page) => {
+  check(await page.until("orbits.length === 1 && orbits[0].length > 20"), "no section");
+  const click = (y, p) => page.evaluate(`(async () => { drawSection();
+    const box = at("phase").getBoundingClientRect();
+    await clickSection({ clientX: box.left + phase.x(${y}), clientY: box.top + phase.y(${p}) });
+    return at("message").textContent; })()`);
+  check(await click(0.1, 0.1) === "", "starts no orbit");
+  check(await page.until("orbits.length === 2 && orbits[1].length > 20"), "no second orbit");
+  check(await page.evaluate("Math.hypot(orbits[1][0] - 0.1, orbits[1][1] - 0.1) < 0.5"),
+    "another orbit");
+  check(/no orbit/.test(await click(0.1, 3)), "starts where the energy does not allow it");
+});
 // How many steps are asked for at a time changes no bit; a disc keeps its area.
 await tried("pendulum", "integrators=verlet,rk4,euler&disc=1&dt=0.0625", async (page) => {
   check(await page.until("rows.length === 6"), "no disc");
