@@ -28,7 +28,7 @@ class DenseOutput:
 
     def __call__(self, t):
         single = not hasattr(t, "__len__") or getattr(t, "ndim", 1) == 0
-        times = [float(t)] if single else [float(one) for one in t]
+        times = [_real("t", one) for one in ([t] if single else t)]
         found = [self._at(one) for one in times]
         if single:
             return np.array(found[0]) if np is not None else found[0]

@@ -275,7 +275,7 @@ def _closest(name, names):
 def _integrator(name):
     if hasattr(name, "_pointer"):  # an Integrator
         return name._pointer, False
-    if callable(getattr(name, "step", None)):  # an Integrator that is a function
+    if getattr(name, "step", None) is not None:  # an Integrator that is a function
         raise Refused("%s is a function of Python: solve and compare take it" % name.name)
     if isinstance(name, type):  # scipy.integrate.DOP853
         name = name.__name__

@@ -153,7 +153,9 @@ class _Parts:
         try:
             self.name, self.weights = name, [float(Fraction(one)) if isinstance(one, str)
                                              else _real("step", one) for one in weights]
-        except ValueError:
+        except (ValueError, ZeroDivisionError) as error:
+            if isinstance(error, Refused):
+                raise
             raise Refused("%s is composed of numbers, not of formulas: %.80r"
                           % (name, weights)) from None
         if not abs(sum(self.weights) - 1) < 1e-12:

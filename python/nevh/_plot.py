@@ -40,8 +40,8 @@ def style(name):
             "fillstyle": "none" if mark[1:] else "full"}
 
 
-def plot_table(table, x, y, by, ax):
-    """The Axes with columns of a table drawn."""
+def _columns_of(table, x, y, by):
+    """What a table is drawn by: x, all y, by, and which axes are logarithmic."""
     command = table.command[0] if table.command else ""
     logarithmic, names = "", table.columns
     if x is None and y is None:
@@ -58,6 +58,13 @@ def plot_table(table, x, y, by, ax):
     ys = [y] if isinstance(y, str) else list(y)
     for name in [x, *ys] + ([by] if by else []):
         table[name]  # a column that is not there is named
+    return x, ys, by, logarithmic
+
+
+def plot_table(table, x, y, by, ax):
+    """The Axes with columns of a table drawn."""
+    command = table.command[0] if table.command else ""
+    x, ys, by, logarithmic = _columns_of(table, x, y, by)
     ax = _axes(ax)
     groups = list(dict.fromkeys(row.get(by) for row in table)) if by else [None]
     for group in groups:

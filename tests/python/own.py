@@ -171,8 +171,12 @@ def test_compositions_of_what_is_no_table():
     again = pickle.loads(pickle.dumps(made))
     assert again.order == 4 and list(again.step.weights) == list(made.step.weights)
     for text, compose in (("add up to 1.1", {"avf": [0.5, 0.6]}), ("of numbers", {
-            "avf": ["2^(1/3)"]}), ("no table", {"tao2": [1]}), ("no table", {"taylor": [1]})):
+            "avf": ["2^(1/3)"]}), ("of numbers", {"avf": ["1/0"]}), ("no table", {"tao2": [1]}), ("no table", {"taylor": [1]})):
         raised(nevh.Refused, text, nevh.Integrator, "x", compose=compose)
+    raised(nevh.Refused, "is a function", nevh.sweep, "pendulum", {"phi": [1]},
+           "energy_error", made, dt=0.1, t_end=1)
+    sol = nevh.solve(FORMULA, (0, 1), [1, 0], "verlet", dt=0.1, dense_output=True).sol
+    raised(nevh.Refused, "not a real number", sol, "a")
 
 
 def test_step_with_a_default():
