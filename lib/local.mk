@@ -328,6 +328,11 @@ step_texts = integrators/kernels/splitting_step.h \
 	lib/native/steps/implicit_orbit.h \
 	lib/native/steps/implicit_lanes.h \
 	lib/native/steps/entry.h \
+	lib/native/steps/compiled_formulas.h \
+	lib/native/steps/formula_needs.h \
+	lib/native/steps/loop_needs.h \
+	lib/native/steps/series_sums.h \
+	lib/native/steps/program_main.h \
 	lib/native/steps/runge_kutta_driver.h \
 	lib/native/steps/nystrom_driver.h \
 	lib/native/steps/splitting_first.h \

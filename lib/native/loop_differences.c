@@ -28,10 +28,9 @@ static double step_of(const nevh__term_loop *x, size_t instance, size_t k) {
     return x->s->term->delta[instance * x->s->term->nv + k];
 }
 
-/* True if all instances have one step. */
-static bool is_common(const nevh__term_loop *x, size_t k) {
-    for (size_t i = 1; i < x->s->term->term->decl.count; i++)
-        if (step_of(x, i, k) != step_of(x, 0, k))
+bool nevh__loop_has_common_step(const nevh__planned *term, size_t k) {
+    for (size_t i = 1; i < term->term->decl.count; i++)
+        if (term->delta[i * term->nv + k] != term->delta[k])
             return false;
     return true;
 }
@@ -41,7 +40,7 @@ static void name_step(const nevh__term_loop *x, size_t k,
                       char name[NEVH__NAME]) {
     nevh__writer *w = x->s->w;
     char number[NEVH__NAME];
-    if (is_common(x, k)) {
+    if (nevh__loop_has_common_step(x->s->term, k)) {
         nevh__write_number(w, step_of(x, 0, k), number);
         snprintf(name, NEVH__NAME, w->readable ? "%.30s" : "ALL(%.30s)",
                  number);
@@ -68,7 +67,7 @@ void nevh__write_steps(const nevh__term_loop *x) {
             column[i] = step_of(x, i, x->vars[v]);
         snprintf(name, sizeof name, "    static const double step%u_%zu", x->id,
                  x->vars[v]);
-        if (!is_common(x, x->vars[v]))
+        if (!nevh__loop_has_common_step(x->s->term, x->vars[v]))
             nevh__write_numbers(x->s->w, name, count, column);
         free(column);
     }

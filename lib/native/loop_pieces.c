@@ -8,17 +8,6 @@
    loop. */
 enum { SHORT_PIECE = 16, FEWEST_INSTANCES = 16 };
 
-static const nevh_term *term_of(const nevh__term_loop *x) {
-    return &x->s->term->term->decl;
-}
-
-static size_t first_of(const nevh__term_loop *x) {
-    return nevh__first_of(x->s);
-}
-static size_t end_of(const nevh__term_loop *x) {
-    return nevh__end_of(x->s);
-}
-
 bool nevh__is_loop(const nevh__planned *term) {
     return term->term->decl.count >= FEWEST_INSTANCES;
 }
@@ -42,7 +31,7 @@ static bool goes_on(const nevh__term_loop *x, size_t instance) {
 }
 
 static void find_pieces(nevh__term_loop *x) {
-    size_t count = term_of(x)->count;
+    size_t count = nevh__loop_term(x)->count;
     for (size_t k = 0; k < x->s->term->nv; k++) {
         size_t same = 0, next = 0;
         for (size_t i = 1; i < count; i++) {
@@ -64,7 +53,7 @@ void nevh__loop_bases(const nevh__term_loop *x, size_t instance, size_t *least,
                       size_t *most) {
     *least = SIZE_MAX;
     *most = 0;
-    for (size_t k = first_of(x); k < end_of(x); k++) {
+    for (size_t k = nevh__first_of(x->s); k < nevh__end_of(x->s); k++) {
         size_t at = nevh__loop_index(x, instance, k);
         *least = at < *least ? at : *least;
         *most = at > *most ? at : *most;
@@ -73,7 +62,7 @@ void nevh__loop_bases(const nevh__term_loop *x, size_t instance, size_t *least,
 
 bool nevh__loop_is_local(const nevh__term_loop *x) {
     bool all = x->pieces == 1 && !x->listed;
-    for (size_t k = first_of(x); k < end_of(x); k++)
+    for (size_t k = nevh__first_of(x->s); k < nevh__end_of(x->s); k++)
         all &= x->step[k] == 1;
     return all;
 }
@@ -96,7 +85,7 @@ static void pack(packing *p, size_t x) {
 
 void nevh__loop_pack(const nevh__term_loop *x) {
     packing p = {.w = x->s->w};
-    size_t nv = x->s->term->nv, count = term_of(x)->count;
+    size_t nv = x->s->term->nv, count = nevh__loop_term(x)->count;
     for (size_t k = 0; x->listed && k < nv; k++)
         for (size_t i = 0; i < count; i++)
             pack(&p, nevh__loop_index(x, i, k));
@@ -111,6 +100,15 @@ void nevh__loop_pack(const nevh__term_loop *x) {
     pack(&p, 0);
 }
 
+size_t nevh__loop_constants(const nevh__term_loop *x) {
+    const nevh_term *is = nevh__loop_term(x);
+    size_t first = x->s->w->count;
+    for (size_t k = 0; k < is->nc; k++)
+        for (size_t i = 0; i < is->count; i++)
+            nevh__writer_append(x->s->w, is->c[i * is->nc + k]);
+    return first;
+}
+
 bool nevh__loop_init(const nevh__slope_text *s, nevh__term_loop *x) {
     size_t nv = s->term->nv;
     *x = (nevh__term_loop){.s = s, .id = s->w->formulas};
@@ -119,7 +117,7 @@ bool nevh__loop_init(const nevh__slope_text *s, nevh__term_loop *x) {
     bool fine = x->step && x->vars;
     if (fine)
         find_pieces(x);
-    for (size_t k = first_of(x); fine && k < end_of(x); k++)
+    for (size_t k = nevh__first_of(x->s); fine && k < nevh__end_of(x->s); k++)
         if (nevh__slope_reads(s, k))
             x->vars[x->n_vars++] = k;
     s->w->failed |= !fine;

@@ -17,63 +17,6 @@
 /* Names in a comment. */
 enum { MOST_NAMES = 8 };
 
-static const nevh_term *term_of(const nevh__term_loop *x) {
-    return &x->s->term->term->decl;
-}
-
-static size_t first_of(const nevh__term_loop *x) {
-    return nevh__first_of(x->s);
-}
-
-static const char helpers[] =
-    "typedef unsigned place __attribute__((may_alias));\n"
-    "#define APART static __attribute__((noinline, unused))\n"
-    "APART wide load_part(const double *x, size left) {\n"
-    "    wide y;\n"
-    "    EACH_LANE y[lane] = x[(size)lane < left ? lane : 0];\n"
-    "    return y;\n}\n"
-    "INLINE wide load_row(const double *x, size left) {\n"
-    "    return left >= 8 ? *(const wide *)x : load_part(x, left);\n}\n"
-    "INLINE wide load_at(const double *x, const place *at, size left) {\n"
-    "    wide y;\n"
-    "    EACH_LANE y[lane] = x[at[(size)lane < left ? lane : 0]];\n"
-    "    return y;\n}\n"
-    "APART void add_row(double *to, const double *x, size count) {\n"
-    "    size i = 0;\n"
-    "    for (; i + 8 <= count; i += 8)\n"
-    "        *(wide *)(to + i) += *(const wide *)(x + i);\n"
-    "    for (; i < count; i++) to[i] += x[i];\n}\n"
-    /* Derivatives that a row gives to variables from `at` on, but for those that
-       are not asked for. */
-    "INLINE void add_some(double *slope, size at, const double *x, size count, "
-    "size first, size past) {\n"
-    "    size skip = at < first ? first - at : 0;\n"
-    "    size stop = past < at ? 0 : past - at < count ? past - at : count;\n"
-    "    if (skip < stop) add_row(slope + at + skip, x + skip, stop - skip);\n}\n"
-    "APART void add_all(double *to, const double *x, size count) {\n"
-    "    double sum = *to;\n"
-    "    for (size i = 0; i < count; i++) sum += x[i];\n"
-    "    *to = sum;\n}\n"
-    "INLINE void add_at(double *to, const place *at, const double *x, size "
-    "count) {\n"
-    "    for (size i = 0; i < count; i++) to[at[i]] += x[i];\n}\n"
-    "INLINE double sum_of(wide x) {\n"
-    "    return ((x[0] + x[1]) + (x[2] + x[3])) + ((x[4] + x[5]) + (x[6] + "
-    "x[7]));\n}\n"
-    /* g: where a piece begins, and which variables its first instance reads;
-       the next piece follows. */
-    "#define EACH_PIECE(g, fields) \\\n"
-    "    for (size begin = from, end; begin < until && \\\n"
-    "         (end = g[fields] < until ? g[fields] : until, 1); \\\n"
-    "         g += g[fields] == end ? fields : 0, begin = end)\n"
-    "#undef SLOPE\n"
-    "#define SLOPE static __attribute__((noinline))\n";
-
-void nevh__write_loop_helpers(nevh__writer *w) {
-    if (!w->readable)
-        nevh__write(w, "%s", helpers);
-}
-
 /* Names. */
 
 static void name_for_readers(const nevh__term_loop *x, nevh__variable kind,
@@ -111,7 +54,7 @@ void nevh__loop_name(nevh__writer *w, const nevh__formula_text *f,
 /* Loads of a vector of instances. */
 static void write_loads(const nevh__term_loop *x, size_t constants) {
     nevh__writer *w = x->s->w;
-    const nevh_term *is = term_of(x);
+    const nevh_term *is = nevh__loop_term(x);
     for (size_t k = 0; k < x->s->term->nv; k++) {
         const char *half = k < x->s->term->nq ? "q" : "p";
         nevh__write(w, "    wide x%u_%zu = ", x->id, k);
@@ -137,7 +80,7 @@ static void write_add(const nevh__term_loop *x, size_t k) {
         nevh__write(w,
                     "        add_at(slope, g + %zu + from, row%u_%zu, until - "
                     "from);\n",
-                    k * term_of(x)->count, x->id, k);
+                    k * nevh__loop_term(x)->count, x->id, k);
     else if (x->step[k])
         nevh__write(w,
                     "        g = start;\n        EACH_PIECE(g, %zu) "
@@ -167,7 +110,8 @@ static void write_adds_in_turn(const nevh__term_loop *x) {
     for (size_t v = 0; v < x->n_vars; v++) {
         size_t k = x->vars[v];
         if (x->listed)
-            nevh__write(w, "    slope[g[%zu + i]]", k * term_of(x)->count);
+            nevh__write(w, "    slope[g[%zu + i]]",
+                        k * nevh__loop_term(x)->count);
         else
             nevh__write(w, "    slope[g[%zu]%s]", k + 1,
                         x->step[k] ? " + (i - g[0])" : "");
@@ -212,7 +156,7 @@ void nevh__write_row(const nevh__term_loop *x, size_t k, const char *name) {
 }
 
 bool nevh__write_loop_body(const nevh__term_loop *x) {
-    nevh__formula_text f = {.tape = term_of(x)->params,
+    nevh__formula_text f = {.tape = nevh__loop_term(x)->params,
                             .lanes = x->s->w->readable ? NULL : &nevh__eight,
                             .scalar = x->s->f->portable,
                             .variable = nevh__loop_name,
@@ -225,20 +169,10 @@ bool nevh__write_loop_body(const nevh__term_loop *x) {
     for (size_t v = 0; v < x->n_vars; v++) {
         char name[NEVH__NAME];
         nevh__derivative_name(&f, x->s->kick ? NEVH__Q : NEVH__P,
-                              x->vars[v] - first_of(x), name);
+                              x->vars[v] - nevh__first_of(x->s), name);
         nevh__write_row(x, x->vars[v], name);
     }
     return true;
-}
-
-/* Instances by variable, for their constants. */
-static size_t append_constants(const nevh__term_loop *x) {
-    const nevh_term *is = term_of(x);
-    size_t first = x->s->w->count;
-    for (size_t k = 0; k < is->nc; k++)
-        for (size_t i = 0; i < is->count; i++)
-            nevh__writer_append(x->s->w, is->c[i * is->nc + k]);
-    return first;
 }
 
 /* Blocks of the tape: instances lo to hi. */
@@ -257,7 +191,7 @@ static void write_rows(const nevh__term_loop *x, size_t size) {
 
 /* Instances that have a part in the slopes from `first` to `past`. */
 static void write_range(const nevh__term_loop *x) {
-    size_t count = term_of(x)->count, least, most;
+    size_t count = nevh__loop_term(x)->count, least, most;
     nevh__write(x->s->w, "    size lo = 0, hi = %zu;\n", count);
     if (!nevh__loop_is_local(x))
         return;
@@ -274,7 +208,7 @@ static bool write_block(const nevh__term_loop *x) {
     snprintf(places, sizeof places, "%zu", w->count);
     snprintf(block, sizeof block, "%zu", x->s->f->capacity);
     nevh__loop_pack(x);
-    size_t constants = append_constants(x);
+    size_t constants = nevh__loop_constants(x);
     nevh__write(w, "    {\n");
     write_range(x);
     nevh__write_filled(w, block_begins, (const char *const[]){places, block});
@@ -301,7 +235,7 @@ static bool write_block(const nevh__term_loop *x) {
 
 static void write_list(const nevh__term_loop *x, size_t k) {
     nevh__writer *w = x->s->w;
-    size_t count = term_of(x)->count;
+    size_t count = nevh__loop_term(x)->count;
     nevh__write(w, "    static const int at%u_%zu[%zu] = {", x->id, k, count);
     for (size_t i = 0; i < count; i++)
         nevh__write(w, "%s%zu",
@@ -313,7 +247,7 @@ static void write_list(const nevh__term_loop *x, size_t k) {
 }
 
 static void write_lists(const nevh__term_loop *x) {
-    const nevh_term *is = term_of(x);
+    const nevh_term *is = nevh__loop_term(x);
     double *column = nevh__array(is->count, sizeof *column);
     for (size_t k = 0; x->listed && k < x->s->term->nv; k++)
         write_list(x, k);
@@ -333,8 +267,9 @@ static void write_lists(const nevh__term_loop *x) {
 static void write_comment(const nevh__term_loop *x) {
     nevh__writer *w = x->s->w;
     nevh__write(w, "    /* ");
-    nevh__write_word(w, term_of(x)->effect ? term_of(x)->effect : "H");
-    nevh__write(w, ": %zu times, the first of ", term_of(x)->count);
+    nevh__write_word(w, nevh__loop_term(x)->effect ? nevh__loop_term(x)->effect
+                                                   : "H");
+    nevh__write(w, ": %zu times, the first of ", nevh__loop_term(x)->count);
     for (size_t k = 0; k < x->s->term->nv && k < MOST_NAMES; k++) {
         char name[NEVH__NAME];
         nevh__state_name(w, k >= x->s->term->nq, nevh__loop_index(x, 0, k),
@@ -371,8 +306,8 @@ static void write_adds_for_readers(const nevh__term_loop *x) {
     for (size_t v = 0; v < x->n_vars; v++) {
         size_t k = x->vars[v];
         char to[NEVH__NAME];
-        name_for_readers(x, x->s->kick ? NEVH__Q : NEVH__P, k - first_of(x),
-                         to);
+        name_for_readers(x, x->s->kick ? NEVH__Q : NEVH__P,
+                         k - nevh__first_of(x->s), to);
         if (!together)
             nevh__write(w, each, "");
         nevh__write(w, "            slope%s += row%u_%zu[i - from];\n", to + 1,
@@ -386,9 +321,9 @@ static bool write_for_readers(const nevh__term_loop *x) {
     nevh__writer *w = x->s->w;
     char count[24], block[24];
     size_t size = x->s->f->capacity;
-    if (size > term_of(x)->count)
-        size = term_of(x)->count;
-    snprintf(count, sizeof count, "%zu", term_of(x)->count);
+    if (size > nevh__loop_term(x)->count)
+        size = nevh__loop_term(x)->count;
+    snprintf(count, sizeof count, "%zu", nevh__loop_term(x)->count);
     snprintf(block, sizeof block, "%zu", size);
     write_comment(x);
     write_lists(x);

@@ -201,6 +201,12 @@ bool nevh__native_write(nevh__writer *text, nevh_work *w) {
     return !text->refusal && families[family_of(w)].write(text, w);
 }
 
+/* The text of what is compiled; false: there is none. */
+static bool write_text(nevh__writer *text, nevh_work *w) {
+    nevh__write_prelude(text);
+    return nevh__native_write(text, w) && !text->failed;
+}
+
 /* Arguments of steps, but for numbers; false when memory is out. */
 static bool fill(nevh__native *x, const nevh_work *w) {
     size_t terms = w->field->n_terms;
@@ -259,8 +265,7 @@ double nevh__native_saves(nevh_work *w) {
         return saved_by(w, w->native->characters);
     if (w->options->native != NEVH_NATIVE_AUTO || obstacle(w))
         return NAN;
-    nevh__write_prelude(&text);
-    if (nevh__native_write(&text, w) && !text.failed)
+    if (write_text(&text, w))
         seconds = saved_by(w, strlen(text.text));
     nevh__writer_free(&text);
     return seconds;
@@ -352,10 +357,10 @@ static bool load(const nevh_work *w, nevh__native *x, const char *text,
 static bool plan(nevh_work *w, nevh__native *x, nevh__writer *text,
                  char why[NEVH__WHY_NATIVE]) {
     bool always = w->options->native == NEVH_NATIVE_ALWAYS;
-    nevh__write_prelude(text);
-    if (!nevh__native_write(text, w) && text->refusal && always)
+    bool written = write_text(text, w);
+    if (text->refusal && always)
         snprintf(why, NEVH__WHY_NATIVE, "%s", text->refusal);
-    if (text->refusal || text->failed || !fill(x, w))
+    if (!written || !fill(x, w))
         return false;
     x->characters = strlen(text->text);
     bool compile = compiling_pays(w, x->characters);
@@ -400,9 +405,7 @@ static char *text_to_build(nevh_work *w) {
     char *found = NULL;
     if (w->native || w->options->native != NEVH_NATIVE_AUTO || obstacle(w))
         return NULL;
-    nevh__write_prelude(&text);
-    if (nevh__native_write(&text, w) && !text.failed &&
-        compiling_pays(w, strlen(text.text))) {
+    if (write_text(&text, w) && compiling_pays(w, strlen(text.text))) {
         found = text.text;
         text.text = NULL;
     }

@@ -105,8 +105,6 @@ void nevh__names_shorten(char *text);
 /* All but functions and values that nothing else asks for.  Cuts the text into
    lines; false: memory is out. */
 bool nevh__write_used(nevh__writer *, char *text);
-/* True if a text has such a call, "name(". */
-bool nevh__text_calls(const char *text, const char *call);
 
 /* Makes w->native if that is wanted, possible and worth while; `why`: else what
    is in the way, or "". */

@@ -41,7 +41,7 @@ static const char *write_word(nevh__writer *w, const char *word, size_t length,
         after += bytes + 2;
     } else if (is(word, length, "NEVH__L") || is(word, length, "NEVH__H")) {
         size_t bytes = strcspn(after, ")") - 1; /* NEVH__L(asinh) */
-        nevh__write(w, "%s%.*s", word[length - 1] == 'H' ? "nevh_" : "",
+        nevh__write(w, "%s%.*s", word[length - 1] == 'H' ? "nevh__" : "",
                     (int)bytes, after + 1);
         after += bytes + 2;
     } else if (is(word, length, "NEVH__G"))
@@ -52,8 +52,6 @@ static const char *write_word(nevh__writer *w, const char *word, size_t length,
         nevh__write(w, "(3 * %s) * ", m->g);
     else if (is(word, length, "NEVH__LN10"))
         nevh__write(w, "2.302585092994045684");
-    else if (length > 6 && strncmp(word, "nevh__", 6) == 0)
-        nevh__write(w, "nevh_%.*s", (int)length - 6, word + 6);
     else
         nevh__write(w, "%.*s", (int)length, word);
     return after;

@@ -23,43 +23,6 @@ int nevh__vector_lanes(void) {
 #endif
 }
 
-static const char basis[] =
-    "typedef __SIZE_TYPE__ size;\n"
-    "_Static_assert(sizeof(double) == sizeof 1.0 && sizeof(size) == "
-    "sizeof(void *), \"double or size_t is another type in CC\");\n"
-    "#define INLINE static inline __attribute__((always_inline, unused))\n"
-    "#define SLOPE INLINE\n"
-    "#define CONST __attribute__((const))\n"
-    "typedef double wide __attribute__((vector_size(64), aligned(8)));\n"
-    "#define ALL(x) ((wide){x, x, x, x, x, x, x, x})\n"
-    "#define EACH_LANE for (int lane = 0; lane < 8; lane++)\n"
-    "typedef double few __attribute__((vector_size(32), aligned(8)));\n"
-    "#define ALL_FOUR(x) ((few){x, x, x, x})\n"
-    "#define EACH_OF_FOUR for (int lane = 0; lane < 4; lane++)\n"
-    "INLINE double nevh_choose(int first, double x, double y) { return first ? "
-    "x : y; }\n"
-    "INLINE double nevh_real_min(double x, double y) { return x != x || x < y ? x : "
-    "y; }\n"
-    "INLINE double nevh_real_max(double x, double y) { return x != x || x > y ? x : "
-    "y; }\n"
-    "INLINE double nevh_sign(double x) { return x != x ? x : x > 0 ? 1 : x < 0 "
-    "? -1 : 0; }\n"
-    "#define nevh_chain(x, y) ((x) * (y)) /* of numbers and of vectors */\n"
-    "extern double fmod(double, double) CONST;\n"
-    "INLINE double nevh_mod(double x, double y) { double rest = fmod(x, y); "
-    "return rest != 0 && (rest < 0) != (y < 0) ? rest + y : rest; }\n"
-    "INLINE double nevh_roundoff(double sum, double a, double b) { double part = "
-    "sum - a; return (a - (sum - part)) + (b - part); }\n"
-    "extern double fabs(double) CONST, floor(double) CONST, rint(double) "
-    "CONST;\n"
-    "extern double asinh(double) CONST, acosh(double) CONST, atanh(double) "
-    "CONST, log10(double) CONST, sqrt(double) CONST;\n"
-    "#define lane_sqrt __builtin_sqrt\n"
-    "INLINE wide wide_sqrt(wide x) { wide y; EACH_LANE y[lane] = "
-    "__builtin_sqrt(x[lane]); return y; }\n"
-    "INLINE few few_sqrt(few x) { few y; EACH_OF_FOUR y[lane] = "
-    "__builtin_sqrt(x[lane]); return y; }\n";
-
 /* Functions of libm, and which of them have a form for vectors. */
 static const struct {
     const char *name;
@@ -171,7 +134,8 @@ void nevh__write_prelude(nevh__writer *w) {
     static const char *const same[] = {"{x, x}", "{x, x, x, x}",
                                        "{x, x, x, x, x, x, x, x}"};
     int lanes = nevh__vector_lanes();
-    nevh__write(w, "%s", basis);
+    nevh__write_lines(w, nevh__compiled_formulas_text);
+    nevh__write_lines(w, nevh__formula_needs_text);
     if (lanes > 1)
         nevh__write(w,
                     "typedef double vector __attribute__((vector_size(%d)));\n"

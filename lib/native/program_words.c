@@ -10,13 +10,15 @@ static bool is_word(char c) {
     return isalnum((unsigned char)c) || c == '_';
 }
 
-/* True if a line that is no comment has a word. */
-static bool has_word(const char *line, const char *word, size_t length) {
+/* True if a line that is no comment has a word; call: with a parenthesis behind it. */
+static bool has_word(const char *line, const char *word, size_t length,
+                     bool call) {
     if (strncmp(line + strspn(line, " "), "/*", 2) == 0)
         return false;
     for (const char *at = line; (at = strchr(at, *word)); at++)
         if (strncmp(at, word, length) == 0 &&
-            (at == line || !is_word(at[-1])) && !is_word(at[length]))
+            (at == line || !is_word(at[-1])) &&
+            (call ? at[length] == '(' : !is_word(at[length])))
             return true;
     return false;
 }
@@ -131,7 +133,7 @@ static bool is_of_use(char **lines, size_t i, size_t count) {
     memcpy(word, name, length);
     word[length] = '\0';
     for (size_t k = i + 1; k < count && (!lines[k] || lines[k][0] != '}'); k++)
-        if (lines[k] && has_word(lines[k], word, length))
+        if (lines[k] && has_word(lines[k], word, length, false))
             return true;
     return false;
 }
@@ -172,7 +174,7 @@ static bool drop_function(char **lines, size_t i, size_t count) {
         name--;
     for (size_t k = 0; k < count; k++) {
         if ((k >= i && k < end) || !lines[k] ||
-            !has_word(lines[k], name, (size_t)(after - name)))
+            !has_word(lines[k], name, (size_t)(after - name), true))
             continue;
         if (end_of_function(lines, k, count, &other_declared_only) == k ||
             !other_declared_only || declared_only)
@@ -210,11 +212,4 @@ bool nevh__write_used(nevh__writer *w, char *text) {
         }
     free(lines);
     return true;
-}
-
-bool nevh__text_calls(const char *text, const char *call) {
-    for (const char *at = text; (at = strstr(at, call)); at++)
-        if (at == text || !is_word(at[-1]))
-            return true;
-    return false;
 }

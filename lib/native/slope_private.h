@@ -41,6 +41,9 @@ typedef struct {
     bool in_registers; /* what instances give is not written to rows */
 } nevh__term_loop;
 
+static inline const nevh_term *nevh__loop_term(const nevh__term_loop *x) {
+    return &x->s->term->term->decl;
+}
 /* false when memory is out; to be cleared in all cases. */
 bool nevh__loop_init(const nevh__slope_text *, nevh__term_loop *);
 void nevh__loop_clear(nevh__term_loop *);
@@ -53,6 +56,11 @@ void nevh__loop_bases(const nevh__term_loop *, size_t instance, size_t *least,
                       size_t *most);
 /* True if instance i reads what is i further on than what the first reads. */
 bool nevh__loop_is_local(const nevh__term_loop *);
+/* Appends constants to the numbers, those of all instances one after the other;
+   returns the place of the first. */
+size_t nevh__loop_constants(const nevh__term_loop *);
+/* True if all instances of differences have one step by variable k. */
+bool nevh__loop_has_common_step(const nevh__planned *, size_t k);
 /* Appends to the numbers, as pairs of 32 bits: of each piece its first instance
    and what that reads; or what instances read, variable after variable. */
 void nevh__loop_pack(const nevh__term_loop *);
@@ -95,8 +103,6 @@ size_t nevh__vectors_at_once(const nevh__writer *, const nevh_field *,
 bool nevh__is_loop(const nevh__planned *);
 /* "if (...) {": whether any of a term's slopes are asked for. */
 void nevh__write_asked(const nevh__slope_text *);
-/* Writes what loops need before them. */
-void nevh__write_loop_helpers(nevh__writer *);
 /* A loop that adds the term's derivatives to slope[], from `first` to `past`. */
 bool nevh__write_loop(const nevh__slope_text *);
 /* For readers: a loop that adds the term's values to sum and lost. */

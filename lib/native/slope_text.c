@@ -470,8 +470,8 @@ static bool write_slope(nevh__writer *w, nevh_field *f, bool kick,
 bool nevh__write_slopes(nevh__writer *w, nevh_field *f, size_t calls) {
     if (!nevh__slopes_fit(w, f, calls))
         return false;
-    if (w->loops)
-        nevh__write_loop_helpers(w);
+    if (w->loops && !w->readable)
+        nevh__write_lines(w, nevh__loop_needs_text);
     return write_slope(w, f, true, "kick_slope") &&
            write_slope(w, f, false, "drift_slope");
 }

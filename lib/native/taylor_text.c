@@ -172,7 +172,7 @@ static void write_rows(const author *a) {
         nevh__write(a->text, "{ double *to = %s + k * LANES;\n",
                     which ? "b" : "a");
         for (size_t from = 0; from < a->lanes; from += WIDE) {
-            nevh__write(a->text, "VECTOR(to + %zu) = (vector){", from);
+            nevh__write(a->text, "EIGHT(to + %zu) = (eight){", from);
             for (size_t lane = from; lane < from + WIDE; lane++) {
                 size_t at =
                     lane < r->used[0] ? lane : lane - r->used[0] + r->weighted;
@@ -204,66 +204,6 @@ static void write_outer(const author *a) {
                         lane_of(a, at));
         }
 }
-
-static const char head[] =
-    "typedef __SIZE_TYPE__ count;\n"
-    "typedef double vector __attribute__((vector_size(64), aligned(64), "
-    "may_alias));\n"
-    "#define VECTOR(x) (*(vector *)(x))\n"
-    "int nevh_native_series(const double *N, double t, const double *state, "
-    "double *rows, double *watched);\n";
-
-static const char sums[] =
-    "for (count from = 0; from < LANES; from += 8) {\n"
-    "    const double *x = a + from, *y = b + from;\n"
-    "    const double *u = x + 2 * LANES, *v = y + (k - 2) * LANES;\n"
-    "    vector even = {0}, odd = {0};\n"
-    "    count j = 2;\n"
-    "    for (; j + 2 < k; j += 2, u += 2 * LANES, v -= 2 * LANES) {\n"
-    "        even += VECTOR(u) * VECTOR(v);\n"
-    "        odd += VECTOR(u + LANES) * VECTOR(v - LANES);\n"
-    "    }\n"
-    "    if (j + 1 < k)\n"
-    "        even += VECTOR(u) * VECTOR(v);\n"
-    "    vector outer = VECTOR(x + LANES) * VECTOR(y + (k - 1) * LANES);\n"
-    "    if (k > 2)\n"
-    "        outer += VECTOR(x + (k - 1) * LANES) * VECTOR(y + LANES);\n"
-    "    VECTOR(s + from) = (even + odd) + outer;\n"
-    "}\n";
-
-/* The same.  Those of an even order k and of the next one are taken together, so
-   that what is loaded serves twice: all that does not end in an operand of order k
-   is known.  That pays where lanes fill the nearest cache: 16 % of a series of six
-   bodies. */
-static const char sums_of_two[] =
-    "for (count from = 0; from < LANES; from += 8) {\n"
-    "    const double *x = a + from, *y = b + from;\n"
-    "    if (k % 2 == 0) {\n"
-    "        const double *u = x + 2 * LANES, *v = y + (k - 1) * LANES;\n"
-    "        vector even = {0}, odd = {0}, next_even = {0}, next_odd = {0};\n"
-    "        vector last = k > 2 ? VECTOR(v) : (vector){0};\n"
-    "        count j = 2;\n"
-    "        for (; j + 2 < k; j += 2, u += 2 * LANES, v -= 2 * LANES) {\n"
-    "            vector middle = VECTOR(v - LANES);\n"
-    "            even += VECTOR(u) * middle;\n"
-    "            next_even += VECTOR(u) * last;\n"
-    "            last = VECTOR(v - 2 * LANES);\n"
-    "            odd += VECTOR(u + LANES) * last;\n"
-    "            next_odd += VECTOR(u + LANES) * middle;\n"
-    "        }\n"
-    "        if (k > 2) {\n"
-    "            even += VECTOR(u) * VECTOR(v - LANES);\n"
-    "            next_even += VECTOR(u) * last;\n"
-    "            next_odd += VECTOR(u + LANES) * VECTOR(v - LANES);\n"
-    "        }\n"
-    "        VECTOR(s + from) = even + odd;\n"
-    "        VECTOR(next + from) = next_even + next_odd;\n"
-    "    }\n"
-    "    vector outer = VECTOR(x + LANES) * VECTOR(y + (k - 1) * LANES);\n"
-    "    if (k > 2)\n"
-    "        outer += VECTOR(x + (k - 1) * LANES) * VECTOR(y + LANES);\n"
-    "    VECTOR(s + from) = VECTOR((k % 2 ? next : s) + from) + outer;\n"
-    "}\n";
 
 /* Coefficients of the state, from slopes of the order below. */
 static void write_advance(author *a, const char *k) {
@@ -313,7 +253,7 @@ static void write_order(author *a, bool first) {
     a->first = false;
     nevh__write(a->text, "v%zu = %s;\n", 2 * a->r->n, first ? "1" : "0");
     if (!first)
-        nevh__write(a->text, "%s", a->lanes < MANY_LANES ? sums : sums_of_two);
+        nevh__write(a->text, "sum_products(k, a, b, s, next);\n");
     each_operation(a, next_operation);
     write_watched(a, "k");
     write_rows(a);
@@ -344,19 +284,21 @@ bool nevh__write_series(nevh__writer *text, nevh_work *w) {
     for (size_t i = 0; i < r->n_numbers; i++)
         nevh__writer_append(text, (double)r->numbers[i]);
     nevh__write(text,
-                "%s#define ORDER %zu\n#define LANES %zu\n#define STATE %zu\n",
-                head, a.order, a.lanes, 2 * r->n);
+                "#define ORDER %zu\n#define LANES %zu\n#define STATE %zu\n",
+                a.order, a.lanes, 2 * r->n);
+    if (a.lanes >= MANY_LANES)
+        nevh__write_form(text, "NEVH__TWO_ORDERS");
+    nevh__write_lines(text, nevh__series_sums_text);
     nevh__write(text,
                 "int nevh_native_series(const double *N, double t, "
                 "const double *state, double *rows, double *watched) {\n"
                 "(void)watched;\n"
                 "double a[ORDER * LANES + 8] __attribute__((aligned(64)));\n"
                 "double b[ORDER * LANES + 8] __attribute__((aligned(64)));\n"
-                "double s[LANES + 8] __attribute__((aligned(64))) = {0};\n");
-    if (a.lanes >= MANY_LANES)
-        nevh__write(text, "double next[LANES] __attribute__((aligned(64)));\n");
+                "double s[LANES + 8] __attribute__((aligned(64))) = {0};\n"
+                "double next[LANES] __attribute__((aligned(64)));\n");
     write_begin(&a);
-    nevh__write(text, "count k = 1;\n");
+    nevh__write(text, "size k = 1;\n");
     write_order(&a, true);
     nevh__write(text, "for (k = 2; k < ORDER; k++)\n");
     write_order(&a, false);

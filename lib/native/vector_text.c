@@ -28,14 +28,6 @@ static size_t shift_of(const nevh__term_loop *x, size_t k) {
     return nevh__loop_index(x, 0, k) - least_of(x);
 }
 
-/* True if all instances of differences have one step. */
-static bool has_common_steps(const nevh__planned *term) {
-    for (size_t i = 0; i < term->term->decl.count * term->nv; i++)
-        if (term->delta[i] != term->delta[i % term->nv])
-            return false;
-    return true;
-}
-
 /* Constants are read of instances that are not there, too: not far from those
    that are. */
 static bool has_constants_near(const nevh__term_loop *x) {
@@ -49,10 +41,10 @@ static bool fits(const nevh__slope_text *s) {
     nevh__term_loop x;
     bool exact = s->f->gradient == nevh_exact;
     bool fine = nevh__loop_init(s, &x) && nevh__loop_is_local(&x) &&
-                (!s->term->nq || !s->term->np) &&
-                (exact || has_common_steps(s->term)) && has_constants_near(&x);
+                (!s->term->nq || !s->term->np) && has_constants_near(&x);
     for (size_t k = 0; fine && k < s->term->nv; k++)
-        fine = shift_of(&x, k) <= LANES;
+        fine = shift_of(&x, k) <= LANES &&
+               (exact || nevh__loop_has_common_step(s->term, k));
     nevh__loop_clear(&x);
     return fine;
 }
@@ -179,10 +171,7 @@ static void write_parts(const nevh__term_loop *x, nevh__vectors *v) {
 static void write_loads(const nevh__term_loop *x) {
     nevh__writer *w = x->s->w;
     const nevh_term *is = &x->s->term->term->decl;
-    size_t first = w->count;
-    for (size_t k = 0; k < is->nc; k++)
-        for (size_t i = 0; i < is->count; i++)
-            nevh__writer_append(w, is->c[i * is->nc + k]);
+    size_t first = nevh__loop_constants(x);
     for (size_t k = 0; k < x->s->term->nv; k++)
         nevh__write(w, "    wide x%u_%zu = *(const wide *)(y + %zu);\n", x->id,
                     k, shift_of(x, k));

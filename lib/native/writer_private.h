@@ -10,7 +10,7 @@
 #include "expression/tape_private.h"
 #include "gradient/field_private.h"
 
-enum { NEVH__NAME = 40, NEVH__MOST_SHARED = 32, NEVH__MOST_FORMS = 8 };
+enum { NEVH__NAME = 40, NEVH__MOST_SHARED = 32, NEVH__MOST_FORMS = 16 };
 
 /* Numbers that stand in the table once, and where. */
 typedef struct {
@@ -139,6 +139,11 @@ extern const char *const nevh__block_driver_text[];
 extern const char *const nevh__long_driver_text[];
 extern const char *const nevh__compiled_needs_text[];
 extern const char *const nevh__program_needs_text[];
+extern const char *const nevh__program_main_text[];
+extern const char *const nevh__formula_needs_text[];
+extern const char *const nevh__compiled_formulas_text[];
+extern const char *const nevh__loop_needs_text[];
+extern const char *const nevh__series_sums_text[];
 extern const char *const nevh__fraction_text[];
 
 /* The words of C text for numbers side by side. */

@@ -1,26 +1,28 @@
 /* nevh tests: a header of lib/native/steps as it stands, with what it needs of a
-   scene.  STEPS: its name; FAMILY_*: whose.
+   scene.  HEADER: its name; FAMILY_*: whose.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#if defined FAMILY_SPLITTING || defined FAMILY_RUNGE_KUTTA ||                  \
-    defined FAMILY_NYSTROM
+#if defined FAMILY_FORMULAS || defined FAMILY_SPLITTING ||                     \
+    defined FAMILY_RUNGE_KUTTA || defined FAMILY_NYSTROM
 #define STANDS_ALONE
 #endif
 #if (defined FAMILY_DRIVER || defined STANDS_ALONE) &&                         \
     !defined NEVH__FOR_READERS
-/* What formulas have before them, in place of what the library has. */
+/* In place of what the library has. */
 #define NEVH_VECTOR_PRIVATE_H
 #define NEVH_SIMD_H
-typedef __SIZE_TYPE__ size;
-#define INLINE static inline
-#define CONST  __attribute__((const))
-typedef double wide __attribute__((vector_size(64), aligned(8)));
-extern double fabs(double) CONST;
+#include "native/steps/compiled_formulas.h"
+#include "native/steps/formula_needs.h"
+#ifdef NEVH__LOOPS
+#include "native/steps/loop_needs.h"
+#endif
 #include "native/steps/compiled_needs.h"
 #define TABLE(b) (N + (b))
 #else
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #if defined FAMILY_DRIVER || defined STANDS_ALONE
@@ -127,7 +129,7 @@ drift_slope(NEVH__COMPILED(const double *N, ) slope_number t,
 /* H = (p^2 + q^2)/2: as above, of one orbit, of several, and of a state that is
    long. */
 #ifdef NEVH__FOR_READERS
-#define SLOPE(name, from)                                                      \
+#define SLOPE_OF(name, from)                                                   \
     static double name(double t, const double *q, const double *p,             \
                        double *slope) {                                        \
         (void)q, (void)p;                                                      \
@@ -136,7 +138,7 @@ drift_slope(NEVH__COMPILED(const double *N, ) slope_number t,
         return t - t;                                                          \
     }
 #elif defined NEVH__LOOPS
-#define SLOPE(name, from)                                                      \
+#define SLOPE_OF(name, from)                                                   \
     static double name(const double *N, double t, const wide *q,               \
                        const wide *p, wide *slope, size_t first,               \
                        size_t past) {                                          \
@@ -146,7 +148,7 @@ drift_slope(NEVH__COMPILED(const double *N, ) slope_number t,
         return t - t;                                                          \
     }
 #else
-#define SLOPE(name, from)                                                      \
+#define SLOPE_OF(name, from)                                                   \
     static nevh__number name(const double *N, double t, const nevh__number *q, \
                              const nevh__number *p, nevh__number *slope) {     \
         (void)N, (void)q, (void)p;                                             \
@@ -155,8 +157,8 @@ drift_slope(NEVH__COMPILED(const double *N, ) slope_number t,
         return q[0] - q[0];                                                    \
     }
 #endif
-SLOPE(kick_slope, q)
-SLOPE(drift_slope, p)
+SLOPE_OF(kick_slope, q)
+SLOPE_OF(drift_slope, p)
 #endif
 
 #ifdef FAMILY_SPLITTING
@@ -272,8 +274,34 @@ static inline double worst_noise(NEVH__COMPILED(const double *N, ) double t,
 }
 #endif
 
-#include STEPS
-#if defined STANDS_ALONE && !defined NEVH__ADAPTS
+#ifdef FAMILY_FORMULAS
+#ifdef NEVH__FOR_READERS
+enum { SWEEPS_AT = 2 };
+static const double T0 = 0, T_END = 1, STEP = 0.1, ENERGY_SCALE = 1;
+static const size_t STEPS = 10, EVERY = 2;
+static const char *const TITLES[] = {"t,x", ",p_x"};
+static const char METHOD[] = "verlet,exact";
+static double energy(double t, const double *q, const double *p) {
+    return t + q[0] + p[0];
+}
+#ifdef NEVH__OWN_TIME
+static size_t advance(double *t, double t_end, double h, size_t steps,
+                      double *q, double *p, double *memory) {
+    *t = t_end + h * (q[0] + p[0] + memory[0]);
+    return steps;
+}
+#else
+static size_t advance(double t0, double h, size_t from, size_t steps, double *q,
+                      double *p, double *memory) {
+    q[0] = p[0] + memory[0] + t0 + (double)from * h;
+    return steps;
+}
+#endif
+#endif
+#endif
+
+#include HEADER
+#if defined STANDS_ALONE && !defined NEVH__ADAPTS && !defined FAMILY_FORMULAS
 #ifndef FAMILY_SPLITTING
 enum { KEPT = DOF };
 #define take_first(N, T, t, h, y, lost, kept, room) ((nevh__number){0})

@@ -17,7 +17,7 @@ compiles() {
     shift 3
     $compiler -std=c11 -fsyntax-only -Wall -Wextra -Werror -Wno-unknown-pragmas \
         -Wno-psabi -Wno-unused-function -Wno-unused-const-variable \
-        -DFAMILY_$family -DSTEPS="\"$header\"" "$@" -I"$srcdir/include" \
+        -DFAMILY_$family -DHEADER="\"$header\"" "$@" -I"$srcdir/include" \
         -I"$srcdir/lib" -I"$srcdir/integrators" -Iinclude -Ilib \
         "$srcdir/tests/native/step_header.c" 2>$work/err && return
     echo "$header does not compile by $compiler $*:"
@@ -62,6 +62,15 @@ for compiler in "$cc" clang; do
         -DNEVH__TAKES_STEPS
     compiles $compiler DRIVER native/steps/compiled_needs.h \
         -DNEVH__SIDE_BY_SIDE -DNEVH__STAGES
+    for forms in '' -DNEVH__TWO_ORDERS; do
+        compiles $compiler FORMULAS native/steps/series_sums.h $forms
+    done
+    compiles $compiler FORMULAS native/steps/formula_needs.h -DNEVH__FOR_READERS
+    compiles $compiler FORMULAS native/steps/loop_needs.h -DNEVH__LOOPS
+    for forms in '' -DNEVH__OWN_TIME -DNEVH__WHOLE_STEPS '-DNEVH__WHOLE_STEPS -DNEVH__STAGES'; do
+        compiles $compiler FORMULAS native/steps/program_main.h -DNEVH__FOR_READERS \
+            -DNEVH__ENERGY $forms
+    done
     for forms in -DNEVH__KEEPS '-DNEVH__KEEPS -DNEVH__LOOPS -DNEVH__FINITE' \
         '-DNEVH__KEEPS -DNEVH__SUMS -DNEVH__STAGES'; do
         compiles $compiler DRIVER native/steps/block_driver.h \

@@ -112,6 +112,37 @@ typedef struct {
     double to_q[STAGES * NEVH__LANES], to_p[STAGES * NEVH__LANES];
 } step_weights;
 
+/* Arrays of a step, of so many numbers a row of the state. */
+typedef struct {
+    double points[2 * DOF * STRIDE], gradient[2 * DOF * STRIDE];
+    double before[UNKNOWN * STRIDE], least[UNKNOWN * STRIDE];
+    double times[STRIDE];
+    double unit[2 * DOF * APART], scale[2 * DOF * APART], lowest[APART];
+} sweeps_room;
+
+/* y, lost: the state, and digits that sums have lost. */
+NEVH__INLINE nevh__stage_step sweeps_of(sweeps_room *r, const step_weights *w,
+                                        double *y, const double *lost,
+                                        const struct nevh__stage_owner *owner) {
+    return (nevh__stage_step){.n = DOF,
+                              .stages = STAGES,
+                              .row = ROW,
+                              .stride = STRIDE,
+                              .half = DOF * STRIDE,
+                              .partitioned = PARTITIONED,
+                              .unchecked = true,
+                              .mu_q = mu_q,
+                              .mu_p = mu_p,
+                              .to_q = w->to_q,
+                              .to_p = w->to_p,
+                              .q = y,
+                              .p = y + DOF * APART,
+                              .compensation = lost,
+                              .points = r->points,
+                              .gradient = r->gradient,
+                              .owner = owner};
+}
+
 /* A step, the includer's; false: it cannot be taken, and nothing has changed. */
 NEVH__INLINE bool
 take_step(NEVH__COMPILED(const double *N, ) double t, double h, double *Q,

@@ -9,15 +9,9 @@
 
 typedef struct {
     double y[2 * DOF * 8], lost[2 * DOF * 8], slopes[2 * DOF * STRIDE];
+    double past[UNKNOWN * PAST * STRIDE];
     double steps[8], first_change[8];
 } block;
-
-typedef struct {
-    double points[2 * DOF * STRIDE], gradient[2 * DOF * STRIDE];
-    double before[UNKNOWN * STRIDE], least[UNKNOWN * STRIDE];
-    double past[UNKNOWN * PAST * STRIDE], times[STRIDE], products[STRIDE];
-    double unit[2 * DOF * 8], scale[2 * DOF * 8], lowest[8];
-} sweeps_room;
 
 NEVH__INLINE void load_block(const double *N, double h, const double *Q,
                              const double *P, const double *M, sweeps_room *r,
@@ -38,7 +32,7 @@ NEVH__INLINE void load_block(const double *N, double h, const double *Q,
         to->steps[i] = M[H_AT * WIDTH + i] == h ? M[STEPS_AT * WIDTH + i] : 0;
     for (size_t k = 0; k < UNKNOWN * KEPT_STAGES; k++)
         NEVH_LANES(i, 8) {
-            r->past[k * 8 + i] = M[(SLOPES_AT + k) * WIDTH + i];
+            to->past[k * 8 + i] = M[(SLOPES_AT + k) * WIDTH + i];
         }
 }
 
@@ -62,31 +56,15 @@ NEVH__INLINE bool take_block(const double *N, const step_weights *w, double t,
                              double h, const double *Q, const double *P,
                              const double *M, block *to, size_t *counted) {
     sweeps_room r;
-    double unknown = 0, level[8];
+    double products[STRIDE], unknown = 0, level[8];
     nevh__vector bad = {0};
     size_t left = 8;
     bool settled[8];
     nevh__stage_lane lane[8];
     nevh__stage_progress made[8];
     struct nevh__stage_owner owner = {N, r.times, &bad};
-    nevh__stage_step x = {.n = DOF,
-                          .stages = STAGES,
-                          .row = ROW,
-                          .stride = STRIDE,
-                          .half = DOF * STRIDE,
-                          .partitioned = PARTITIONED,
-                          .unchecked = true,
-                          .mu_q = mu_q,
-                          .mu_p = mu_p,
-                          .to_q = w->to_q,
-                          .to_p = w->to_p,
-                          .q = to->y,
-                          .p = to->y + DOF * 8,
-                          .compensation = to->lost,
-                          .products = r.products,
-                          .points = r.points,
-                          .gradient = r.gradient,
-                          .owner = &owner};
+    nevh__stage_step x = sweeps_of(&r, w, to->y, to->lost, &owner);
+    x.products = products;
     nevh__stage_changes changes = {FIRST,    UNKNOWN, r.unit,
                                    r.before, r.least, r.lowest};
     for (size_t i = 0; i < 8; i++) {
@@ -101,12 +79,12 @@ NEVH__INLINE bool take_block(const double *N, const step_weights *w, double t,
     NEVH_LANES(i, STRIDE) {
         r.times[i] = t + nodes[i / 8] * h;
     }
-    nevh__stage_begin_sweeps(&x, &changes, 8, long_guess, KEPT_STAGES, r.past,
+    nevh__stage_begin_sweeps(&x, &changes, 8, long_guess, KEPT_STAGES, to->past,
                              PAST * STRIDE);
     for (size_t i = 0; i < 8; i++)
         if (to->steps[i] < PAST)
             nevh__stage_begin_lane(&x, &changes, i, guess,
-                                   to->steps[i] > 0 ? STAGES : 0, r.past,
+                                   to->steps[i] > 0 ? STAGES : 0, to->past,
                                    PAST * STRIDE);
     for (size_t sweeps = 1; left > 0; sweeps++) {
         counted[2] += left > FEW ? 8 : left;

@@ -47,34 +47,16 @@ take_step(NEVH__COMPILED(const double *N, ) double t, double h, double *Q,
           double *P, double *M,
           const step_weights *w NEVH__COMPILED(, size_t *counted)) {
     double y[2 * DOF];
-    double points[2 * DOF * ROW], gradient[2 * DOF * ROW], times[ROW];
-    double before[UNKNOWN * ROW], least[UNKNOWN * ROW];
-    double unit[2 * DOF], scale[2 * DOF];
-    double lowest = INFINITY, level = -1, unknown = 0;
+    double level = -1, unknown = 0;
+    sweeps_room r;
     nevh__vector bad = {0};
     size_t sweeps = 0, noises = 0;
-    struct nevh__stage_owner owner = {NEVH__COMPILED(N, ) times, &bad};
+    struct nevh__stage_owner owner = {NEVH__COMPILED(N, ) r.times, &bad};
     struct nevh__stage_judge_owner judge_owner = {
-        NEVH__COMPILED(N, ) y, scale, t, h, &level, &unknown, &noises};
-    nevh__stage_step x = {.n = DOF,
-                          .stages = STAGES,
-                          .row = ROW,
-                          .stride = ROW,
-                          .half = DOF * ROW,
-                          .partitioned = PARTITIONED,
-                          .unchecked = true,
-                          .mu_q = mu_q,
-                          .mu_p = mu_p,
-                          .to_q = w->to_q,
-                          .to_p = w->to_p,
-                          .q = y,
-                          .p = y + DOF,
-                          .compensation = M,
-                          .points = points,
-                          .gradient = gradient,
-                          .owner = &owner};
-    nevh__stage_changes changes = {FIRST,  UNKNOWN, unit,
-                                   before, least,   &lowest};
+        NEVH__COMPILED(N, ) y, r.scale, t, h, &level, &unknown, &noises};
+    nevh__stage_step x = sweeps_of(&r, w, y, M, &owner);
+    nevh__stage_changes changes = {FIRST,    UNKNOWN, r.unit,
+                                   r.before, r.least, r.lowest};
     nevh__stage_judged judged = {
         0, true, NOISY, NEWTON, UNKNOWN * STAGES, &judge_owner};
     nevh__stage_lane lane;
@@ -86,13 +68,14 @@ take_step(NEVH__COMPILED(const double *N, ) double t, double h, double *Q,
         double size, most = SCALES[k];
         y[k] = k < DOF ? Q[k] : P[k - DOF];
         size = fabs(y[k]);
-        scale[k] = size > most ? size : most;
-        unit[k] = fabs(h) / scale[k];
+        r.scale[k] = size > most ? size : most;
+        r.unit[k] = fabs(h) / r.scale[k];
     }
     NEVH_LANES(i, ROW) {
-        times[i] = t + nodes[i] * h;
+        r.times[i] = t + nodes[i] * h;
     }
     nevh__stage_forget(&lane);
+    r.lowest[0] = INFINITY;
     if (M[H_AT] == h && M[STEPS_AT] >= PAST)
         nevh__stage_begin_sweeps(&x, &changes, NEVH__STAGES_TOGETHER,
                                  long_guess, KEPT_STAGES, M + SLOPES_AT,
@@ -111,7 +94,7 @@ take_step(NEVH__COMPILED(const double *N, ) double t, double h, double *Q,
         sweeps++;
     }
     if (state != NEVH__DONE || is_bad(bad) || unknown != 0 ||
-        !add_step(w, gradient, lane.first, y, M, h))
+        !add_step(w, r.gradient, lane.first, y, M, h))
         return false;
     NEVH__EACH(k, 1, DOF) {
         Q[k] = y[k];
