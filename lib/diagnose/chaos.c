@@ -17,10 +17,6 @@ enum {
     STATES_NEAR = 7
 };
 
-static int out_of_memory(nevh_chaos *c) {
-    return nevh__fail(&c->report, NEVH_ENOMEM, "out of memory");
-}
-
 static int check(nevh_chaos *c, const nevh_chaos_options *o) {
     size_t most = 2 * c->n;
     if (!o->options || !o->options->q || !o->options->p)
@@ -65,7 +61,7 @@ static int check_scheme(nevh_chaos *c, const nevh_integrator *scheme) {
 static int plan_lengths(nevh_chaos *c, const nevh_integrator *scheme) {
     nevh_stepper *s = nevh_stepper_new(c->system, scheme, &c->options);
     if (!s)
-        return out_of_memory(c);
+        return nevh__no_memory(&c->report);
     if (nevh_stepper_status(s) || nevh_work_find_scale(&s->work))
         nevh__fail_as(&c->report, &s->report);
     else
@@ -109,7 +105,7 @@ static int plan_period(nevh_chaos *c) {
     o.gradient = NULL;
     nevh_rates *r = nevh_rates_new(c->system, &o);
     if (!r)
-        return out_of_memory(c);
+        return nevh__no_memory(&c->report);
     double rate = fmax(rate_at(c, r, c->own), rate_near(c, r) / 2);
     nevh_rates_free(r);
     c->period = rate > 0 ? 2 * acos(-1) / rate : 8 * c->dt;
@@ -127,7 +123,7 @@ static int plan_field(nevh_chaos *c) {
         nevh_field_free(c->field);
         c->field = nevh_field_new(c->system, &o);
         if (!c->field)
-            return out_of_memory(c);
+            return nevh__no_memory(&c->report);
         if (nevh_field_status(c->field) != NEVH_ENOGRAD)
             break;
     }
@@ -157,7 +153,7 @@ static int plan_stepper(nevh_chaos *c, const nevh_system *system, size_t rows,
     o.p = c->p;
     nevh_stepper *s = nevh_stepper_new(system, scheme, &o);
     if (!s)
-        return nevh__fail(report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(report);
     if (nevh_stepper_status(s)) {
         nevh__fail_as(report, &s->report);
         nevh_stepper_free(s);
@@ -172,7 +168,7 @@ static int plan_tangent(nevh_chaos *c, const nevh_integrator *scheme,
     size_t n = c->n;
     double *state = nevh__array(8 * n, sizeof *state), *scale = state + 4 * n;
     if (!state)
-        return nevh__fail(report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(report);
     for (size_t k = 0; k < n; k++) {
         state[k] = c->own[k];
         state[3 * n + k] = c->own[n + k];
@@ -228,37 +224,43 @@ static int plan_walk(nevh_chaos *c, const nevh_integrator *scheme,
                         &c->report);
 }
 
-static bool plan_start(const nevh_chaos *c, nevh__chaos_start *s) {
+static void lay_out_start(nevh__arena *a, const nevh_chaos *c,
+                          nevh__chaos_start *s) {
     size_t vectors = nevh__chaos_vectors(c);
-    s->w = nevh__array(vectors * 2 * c->n, sizeof *s->w);
-    s->norm = nevh__array(vectors, sizeof *s->norm);
-    s->log = nevh__array(nevh__chaos_logs(c) * NEVH__BINS, sizeof *s->log);
-    s->gali = nevh__array(c->deviations + 1, sizeof *s->gali);
-    s->first = nevh__array(2 * c->n, sizeof *s->first);
-    s->course = nevh__array(2 * c->n, sizeof *s->course);
-    return s->w && s->norm && s->log && s->gali && s->first && s->course;
+    s->w = nevh__arena_take(a, vectors * 2 * c->n, sizeof *s->w);
+    s->norm = nevh__arena_take(a, vectors, sizeof *s->norm);
+    s->log =
+        nevh__arena_take(a, nevh__chaos_logs(c) * NEVH__BINS, sizeof *s->log);
+    s->gali = nevh__arena_take(a, c->deviations + 1, sizeof *s->gali);
+    s->first = nevh__arena_take(a, 2 * c->n, sizeof *s->first);
+    s->course = nevh__arena_take(a, 2 * c->n, sizeof *s->course);
 }
 
-static int plan_rooms(nevh_chaos *c) {
+static void lay_out(nevh__arena *a, void *chaos) {
+    nevh_chaos *c = chaos;
     size_t lanes = c->starts * (2 * nevh__chaos_vectors(c) + 1);
-    size_t room = 2 * c->n * nevh__padded(lanes);
-    c->own = nevh__array(4 * c->n, sizeof *c->own);
-    c->q = nevh__array(room, sizeof *c->q);
-    c->p = nevh__array(room, sizeof *c->p);
-    c->slope = nevh__array(2 * c->n, sizeof *c->slope);
-    c->place = nevh__array(2 * c->n * (c->deviations + 1), sizeof *c->place);
+    size_t rows = 2 * c->n * nevh__padded(lanes);
+    c->own = nevh__arena_take(a, 4 * c->n, sizeof *c->own);
+    c->q = nevh__arena_take(a, rows, sizeof *c->q);
+    c->p = nevh__arena_take(a, rows, sizeof *c->p);
+    c->slope = nevh__arena_take(a, 2 * c->n, sizeof *c->slope);
+    c->place =
+        nevh__arena_take(a, 2 * c->n * (c->deviations + 1), sizeof *c->place);
+    for (size_t i = 0; i < c->starts; i++)
+        lay_out_start(a, c, &c->start[i]);
+}
+
+static int plan_memory(nevh_chaos *c) {
     c->start = nevh__array(c->starts, sizeof *c->start);
-    bool all = c->own && c->q && c->p && c->slope && c->place && c->start;
-    for (size_t i = 0; all && i < c->starts; i++)
-        all = plan_start(c, &c->start[i]);
-    return all ? NEVH_OK : out_of_memory(c);
+    c->memory = c->start ? nevh__arena_new(lay_out, c) : NULL;
+    return c->memory ? NEVH_OK : nevh__no_memory(&c->report);
 }
 
 static int plan(nevh_chaos *c, const nevh_chaos_options *o) {
     size_t n = c->n;
     int status = check(c, o);
     if (!status)
-        status = plan_rooms(c);
+        status = plan_memory(c);
     if (status)
         return status;
     c->options = *o->options;
@@ -310,24 +312,12 @@ nevh_chaos *nevh_chaos_new(const nevh_system *system,
 void nevh_chaos_free(nevh_chaos *c) {
     if (!c)
         return;
-    for (size_t i = 0; c->start && i < c->starts; i++) {
-        free(c->start[i].w);
-        free(c->start[i].norm);
-        free(c->start[i].log);
-        free(c->start[i].gali);
-        free(c->start[i].first);
-        free(c->start[i].course);
-    }
     nevh__chaos_batch_free(c->batch);
     nevh_stepper_free(c->stepper);
     nevh__variational_free(c->variational);
     nevh_field_free(c->field);
     free(c->start);
-    free(c->own);
-    free(c->q);
-    free(c->p);
-    free(c->slope);
-    free(c->place);
+    free(c->memory);
     free(c);
 }
 
@@ -344,13 +334,7 @@ int nevh_chaos_restart(nevh_chaos *c, const double q[], const double p[],
     return nevh__chaos_begin(c);
 }
 
-int nevh_chaos_status(const nevh_chaos *c) {
-    return c ? c->report.status : NEVH_ENOMEM;
-}
-
-const char *nevh_chaos_message(const nevh_chaos *c) {
-    return c ? c->report.text : "out of memory";
-}
+NEVH__REPORTS(chaos)
 
 nevh_counts nevh_chaos_counts(const nevh_chaos *c) {
     return nevh_stepper_counts(c ? c->stepper : NULL);

@@ -73,6 +73,7 @@ struct nevh_chaos {
     nevh__variational *variational;
     nevh_stepper *stepper;
     nevh_field *field;     /* of H, for the energy of starts */
+    void *memory;          /* of all arrays but `start` */
     double *own;           /* q, p, scale: n, n, 2n */
     double *q, *p;         /* of the stepper */
     double *slope, *place; /* 2n */

@@ -214,13 +214,7 @@ void nevh_finer_free(nevh_finer *f) {
     free(f);
 }
 
-int nevh_finer_status(const nevh_finer *f) {
-    return f ? f->report.status : NEVH_ENOMEM;
-}
-
-const char *nevh_finer_message(const nevh_finer *f) {
-    return f ? f->report.text : "out of memory";
-}
+NEVH__REPORTS(finer)
 
 nevh_finer_kind nevh_finer_how(const nevh_finer *f) {
     return f && f->stepper ? f->chosen.kind : NEVH_FINER_NONE;

@@ -12,44 +12,37 @@
    small. */
 static const double of_met = 0.1;
 
+static void lay_out(nevh__arena *a, void *energy) {
+    nevh_energy *e = energy;
+    size_t n = e->n, width = e->width, effects = e->field->system->n_effects;
+    double **const numbers[] = {
+        &e->t,       &e->h,       &e->initial, &e->gained, &e->scale, &e->limit,
+        &e->largest, &e->start_t, &e->typical, &e->seen,   &e->noise, &e->blur};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        *numbers[i] = nevh__arena_take(a, width, sizeof(double));
+    e->start = nevh__arena_take(a, 2 * n * width, sizeof(double));
+    e->trend = nevh__arena_take(a, width, sizeof *e->trend);
+    e->steps = nevh__arena_take(a, width, sizeof *e->steps);
+    e->next_look = nevh__arena_take(a, width, sizeof *e->next_look);
+    e->started = nevh__arena_take(a, width, sizeof *e->started);
+    e->effects = nevh__arena_take(a, effects, sizeof(double));
+    e->state = nevh__arena_take(a, 2 * n, sizeof(double));
+    e->booking = nevh__arena_take(a, 3 * n, sizeof(double));
+}
+
 static int plan(nevh_energy *e, const nevh_system *s, bool portable) {
-    size_t width = e->width;
     e->n = s->n;
-    nevh_options values = {
-        .gradient = &nevh__no_gradient, .width = width, .portable = portable};
+    nevh_options values = {.gradient = &nevh__no_gradient,
+                           .width = e->width,
+                           .portable = portable};
     e->field = nevh_field_new(s, &values);
     if (!e->field)
-        return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&e->report);
     if (e->field->report.status)
         return nevh__fail_as(&e->report, &e->field->report);
-    e->t = nevh__array(width, sizeof *e->t);
-    e->h = nevh__array(width, sizeof *e->h);
-    e->initial = nevh__array(width, sizeof *e->initial);
-    e->gained = nevh__array(width, sizeof *e->gained);
-    e->scale = nevh__array(width, sizeof *e->scale);
-    e->limit = nevh__array(width, sizeof *e->limit);
-    e->largest = nevh__array(width, sizeof *e->largest);
-    e->start = nevh__array(2 * s->n * width, sizeof *e->start);
-    e->start_t = nevh__array(width, sizeof *e->start_t);
-    e->typical = nevh__array(width, sizeof *e->typical);
-    e->seen = nevh__array(width, sizeof *e->seen);
-    e->noise = nevh__array(width, sizeof *e->noise);
-    e->blur = nevh__array(width, sizeof *e->blur);
-    e->trend = nevh__array(width, sizeof *e->trend);
-    e->steps = nevh__array(width, sizeof *e->steps);
-    e->next_look = nevh__array(width, sizeof *e->next_look);
-    e->started = nevh__array(width, sizeof *e->started);
-    e->effects = nevh__array(s->n_effects, sizeof *e->effects);
-    e->state = nevh__array(2 * s->n, sizeof *e->state);
-    e->booking = nevh__array(3 * s->n, sizeof *e->booking);
-    if (width == 1 && !nevh__passage_init(&e->passage, s))
-        return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
-    if (e->t && e->h && e->initial && e->gained && e->scale && e->limit &&
-        e->largest && e->seen && e->noise && e->blur && e->trend && e->steps &&
-        e->start && e->start_t && e->typical && e->next_look && e->started &&
-        e->effects && e->state && e->booking)
-        return NEVH_OK;
-    return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
+    e->memory = nevh__arena_new(lay_out, e);
+    bool passes = e->width > 1 || nevh__passage_init(&e->passage, s);
+    return e->memory && passes ? NEVH_OK : nevh__no_memory(&e->report);
 }
 
 nevh_energy *nevh_energy_new(const nevh_system *system,
@@ -68,37 +61,12 @@ void nevh_energy_free(nevh_energy *e) {
     if (!e)
         return;
     nevh_field_free(e->field);
-    free(e->t);
-    free(e->h);
-    free(e->initial);
-    free(e->gained);
-    free(e->scale);
-    free(e->limit);
-    free(e->largest);
-    free(e->start);
-    free(e->start_t);
-    free(e->typical);
-    free(e->seen);
-    free(e->noise);
-    free(e->blur);
-    free(e->trend);
-    free(e->steps);
-    free(e->next_look);
-    free(e->started);
-    free(e->effects);
-    free(e->state);
-    free(e->booking);
+    free(e->memory);
     nevh__passage_clear(&e->passage);
     free(e);
 }
 
-int nevh_energy_status(const nevh_energy *e) {
-    return e ? e->report.status : NEVH_ENOMEM;
-}
-
-const char *nevh_energy_message(const nevh_energy *e) {
-    return e ? e->report.text : "out of memory";
-}
+NEVH__REPORTS(energy)
 
 /* Fails if the observer cannot use that stepper; told: "to follow" or "to expect". */
 static int check_stepper(nevh_energy *e, const nevh_stepper *s,

@@ -15,6 +15,7 @@ struct nevh_energy {
     const nevh_stepper *followed;             /* NULL: errors are of H alone */
     bool begun;                               /* any of the lanes */
     double given_scale;                       /* by the user; 0: found */
+    void *memory;                             /* of all arrays */
     double *t, *h, *initial, *scale, *gained; /* width each */
     double *limit;   /* width: the largest effect at the start */
     double *start;   /* 2n x width: the state there, and */

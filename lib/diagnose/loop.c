@@ -12,10 +12,6 @@ enum {
 };
 static const double shortest = 1e-12; /* panel, in s */
 
-static int out_of_memory(nevh_loop *l) {
-    return nevh__fail(&l->report, NEVH_ENOMEM, "out of memory");
-}
-
 static size_t most_panels(const nevh_loop *l) {
     size_t points = l->is.most_points ? l->is.most_points : MOST_POINTS;
     return points / NEVH__NODES;
@@ -40,7 +36,7 @@ static int plan_nodes(nevh_loop *l) {
     gsl_integration_glfixed_table *t =
         ask ? gsl_integration_glfixed_table_alloc(NEVH__NODES) : NULL;
     if (!t)
-        return out_of_memory(l);
+        return nevh__no_memory(&l->report);
     for (size_t j = 0; j < NEVH__NODES; j++) {
         double weight, value[NEVH__NODES];
         gsl_integration_glfixed_point(-1, 1, j, &l->node[j], &weight, t);
@@ -98,7 +94,7 @@ static int plan_corners(nevh_loop *l) {
     l->corners = nevh__array(count + 1, sizeof *l->corners);
     l->steps = nevh__copy(l->is.steps, l->is.times, sizeof *l->steps);
     if (!l->corners || !l->steps)
-        return out_of_memory(l);
+        return nevh__no_memory(&l->report);
     memcpy(l->corners, given, count * sizeof *given);
     l->corners[count] = given[0] + 1;
     l->is.n_corners = count;
@@ -107,27 +103,26 @@ static int plan_corners(nevh_loop *l) {
     return NEVH_OK;
 }
 
-static int plan_rooms(nevh_loop *l) {
-    size_t times = l->is.times, size = l->n * NEVH__NODES;
-    l->q = nevh__array(size, sizeof(double));
-    l->p = nevh__array(size, sizeof(double));
-    l->taken_area = nevh__array(times, sizeof(double));
-    l->taken_error = nevh__array(times, sizeof(double));
-    l->centre = nevh__array(times * l->n, sizeof(double));
-    l->unit = nevh__array(times, sizeof(double));
-    l->low = nevh__array(times * 2 * l->n, sizeof(double));
-    l->high = nevh__array(times * 2 * l->n, sizeof(double));
-    l->area = nevh__array(times, sizeof(double));
-    l->error = nevh__array(times, sizeof(double));
-    l->rough = nevh__array(times, sizeof *l->rough);
-    l->noise = nevh__array(times, sizeof(double));
-    l->taken_noise = nevh__array(times, sizeof(bool));
-    l->inside = nevh__array(times, sizeof(bool));
-    return l->inside && l->rough && l->noise && l->taken_noise && l->q &&
-                   l->p && l->taken_area && l->taken_error && l->centre &&
-                   l->unit && l->low && l->high && l->area && l->error
-               ? NEVH_OK
-               : out_of_memory(l);
+static void lay_out(nevh__arena *a, void *loop) {
+    nevh_loop *l = loop;
+    size_t times = l->is.times, n = l->n;
+    double **const numbers[] = {&l->taken_area, &l->taken_error, &l->unit,
+                                &l->area,       &l->error,       &l->noise};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        *numbers[i] = nevh__arena_take(a, times, sizeof(double));
+    l->q = nevh__arena_take(a, n * NEVH__NODES, sizeof(double));
+    l->p = nevh__arena_take(a, n * NEVH__NODES, sizeof(double));
+    l->centre = nevh__arena_take(a, times * n, sizeof(double));
+    l->low = nevh__arena_take(a, times * 2 * n, sizeof(double));
+    l->high = nevh__arena_take(a, times * 2 * n, sizeof(double));
+    l->rough = nevh__arena_take(a, times, sizeof *l->rough);
+    l->taken_noise = nevh__arena_take(a, times, sizeof(bool));
+    l->inside = nevh__arena_take(a, times, sizeof(bool));
+}
+
+static int plan_memory(nevh_loop *l) {
+    l->memory = nevh__arena_new(lay_out, l);
+    return l->memory ? NEVH_OK : nevh__no_memory(&l->report);
 }
 
 nevh_loop *nevh_loop_new(const nevh_system *s, const nevh_integrator *scheme,
@@ -140,7 +135,7 @@ nevh_loop *nevh_loop_new(const nevh_system *s, const nevh_integrator *scheme,
         return NULL;
     l->is = *is;
     l->n = nevh_system_dof(s);
-    if (!check_options(l, o, scheme) && !plan_corners(l) && !plan_rooms(l) &&
+    if (!check_options(l, o, scheme) && !plan_corners(l) && !plan_memory(l) &&
         !plan_nodes(l))
         plan_stepper(l, s, scheme, *o);
     return l;
@@ -151,36 +146,17 @@ void nevh_loop_free(nevh_loop *l) {
         return;
     for (size_t i = 0; l->shape && i < l->panels; i++)
         free(l->shape[i].states);
-    for (size_t i = 0; l->rough && i < l->is.times; i++)
+    for (size_t i = 0; l->memory && i < l->is.times; i++)
         free(l->rough[i].item);
-    free(l->rough);
     nevh_stepper_free(l->stepper);
     free(l->corners);
     free(l->steps);
-    free(l->q);
-    free(l->p);
-    free(l->taken_area);
-    free(l->taken_error);
-    free(l->centre);
-    free(l->unit);
-    free(l->low);
-    free(l->high);
-    free(l->area);
-    free(l->noise);
-    free(l->inside);
-    free(l->taken_noise);
-    free(l->error);
+    free(l->memory);
     free(l->shape);
     free(l);
 }
 
-int nevh_loop_status(const nevh_loop *l) {
-    return l ? l->report.status : NEVH_ENOMEM;
-}
-
-const char *nevh_loop_message(const nevh_loop *l) {
-    return l ? l->report.text : nevh_status_text(NEVH_ENOMEM);
-}
+NEVH__REPORTS(loop)
 
 /* The whole. */
 
@@ -190,7 +166,7 @@ static int put(nevh_loop *l, nevh__queue *to, double from, double to_s,
         size_t room = 2 * to->room + 16;
         nevh__panel *more = nevh__grow(to->item, room, sizeof *more);
         if (!more)
-            return out_of_memory(l);
+            return nevh__no_memory(&l->report);
         to->item = more;
         to->room = room;
     }
@@ -243,7 +219,7 @@ static int accept(nevh_loop *l, nevh__panel at) {
         nevh__panel *more = nevh__grow(l->shape, l->panels + 1, sizeof *more);
         if (!more) {
             free(at.states);
-            return out_of_memory(l);
+            return nevh__no_memory(&l->report);
         }
         l->shape = more;
         l->shape[l->panels] = at;
@@ -259,7 +235,7 @@ static int take(nevh_loop *l, nevh__panel at, bool last) {
         at.states =
             nevh__array(2 * l->n * NEVH__NODES * l->is.times, sizeof(double));
     if (l->is.shapes && !at.states)
-        return out_of_memory(l);
+        return nevh__no_memory(&l->report);
     l->taken_times = 0;
     int status = nevh__loop_follow(
         l, &at, last ? nevh__loop_keep : nevh__loop_keep_smooth);

@@ -153,7 +153,7 @@ int nevh__loop_look_inside(nevh_loop *l) {
         return NEVH_OK;
     x.sum[0] = nevh__array(2 * l->is.times, sizeof *x.sum[0]);
     if (!x.sum[0])
-        return nevh__fail(&l->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&l->report);
     x.sum[1] = x.sum[0] + l->is.times;
     for (int i = 0; i < 2; i++)
         x.length[i] = spread * (l->high[i] - l->low[i]);

@@ -27,6 +27,7 @@ struct nevh_loop {
     nevh_loop_options is;
     nevh_stepper *stepper;
     size_t n;
+    void *memory;    /* of arrays, but for corners, steps and shape */
     double *corners; /* n_corners and 1 more: the first once again */
     size_t *steps;
     double node[NEVH__NODES]; /* in (-1, 1) */

@@ -21,7 +21,7 @@ struct nevh_rates {
     nevh__report report;
     size_t n;
     bool planned, dense;
-    double *length;                     /* 2n */
+    double *length;                     /* 2n, and of all that follows */
     double *state, *slope;              /* 2n each */
     double *direction, *column, *trial; /* 2n each */
     gsl_matrix *matrix;
@@ -80,15 +80,16 @@ static bool plan_dense(nevh_rates *r) {
 
 static bool plan_buffers(nevh_rates *r) {
     size_t m = 2 * r->n;
-    r->length = nevh__array(m, sizeof(double));
-    r->state = nevh__array(m, sizeof(double));
-    r->slope = nevh__array(m, sizeof(double));
-    r->direction = nevh__array(m, sizeof(double));
-    r->column = nevh__array(m, sizeof(double));
-    r->trial = nevh__array(m, sizeof(double));
+    r->length = nevh__array(6 * m, sizeof(double));
+    if (!r->length)
+        return false;
+    r->state = r->length + m;
+    r->slope = r->state + m;
+    r->direction = r->slope + m;
+    r->column = r->direction + m;
+    r->trial = r->column + m;
     r->dense = m <= MOST_DENSE;
-    return r->length && r->state && r->slope && r->direction && r->column &&
-           r->trial && (!r->dense || plan_dense(r));
+    return !r->dense || plan_dense(r);
 }
 
 nevh_rates *nevh_rates_new(const nevh_system *s, const nevh_options *options) {
@@ -104,7 +105,7 @@ nevh_rates *nevh_rates_new(const nevh_system *s, const nevh_options *options) {
     }
     r->n = nevh_system_dof(s);
     if (!plan_buffers(r))
-        nevh__fail(&r->report, NEVH_ENOMEM, "out of memory");
+        nevh__no_memory(&r->report);
     else if (!plan_lengths(r, s, o) && !plan_field(r, s, o))
         r->planned = true;
     if (r->field && nevh_field_status(r->field))
@@ -123,21 +124,10 @@ void nevh_rates_free(nevh_rates *r) {
     if (r->work)
         gsl_eigen_nonsymm_free(r->work);
     free(r->length);
-    free(r->state);
-    free(r->slope);
-    free(r->direction);
-    free(r->column);
-    free(r->trial);
     free(r);
 }
 
-int nevh_rates_status(const nevh_rates *r) {
-    return r ? r->report.status : NEVH_ENOMEM;
-}
-
-const char *nevh_rates_message(const nevh_rates *r) {
-    return r ? r->report.text : "out of memory";
-}
+NEVH__REPORTS(rates)
 
 static int slope_at(nevh_rates *r, double t, const double z[]) {
     return nevh_field_gradient(r->field, 1, &t, z, z + r->n, r->slope,

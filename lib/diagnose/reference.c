@@ -258,7 +258,7 @@ static int make(nevh_reference *r) {
         r->timing =
             nevh_timing_new(r->system, r->t0, r->t1, r->start, r->start + r->n);
         if (!r->timing)
-            return nevh__fail(&r->report, NEVH_ENOMEM, "out of memory");
+            return nevh__no_memory(&r->report);
     }
     if (!r->integrator && !changes_with_time(r))
         status = nevh__exact_recognise(&r->exact, r->system, r->t0, r->t1,
@@ -368,13 +368,7 @@ void nevh_reference_free(nevh_reference *r) {
     free(r);
 }
 
-int nevh_reference_status(const nevh_reference *r) {
-    return r ? r->report.status : NEVH_ENOMEM;
-}
-
-const char *nevh_reference_message(const nevh_reference *r) {
-    return r ? r->report.text : "out of memory";
-}
+NEVH__REPORTS(reference)
 
 const char *nevh_reference_text(const nevh_reference *r) {
     return r ? r->text : "";

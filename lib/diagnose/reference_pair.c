@@ -185,7 +185,7 @@ int nevh__pair_init(nevh__pair *b) {
     b->fine = nevh__reference_stepper(r);
     b->memory = nevh__array(12 * n, sizeof *b->memory);
     if (!b->coarse || !b->fine || !b->memory || !orbit_grow(&b->orbit, n))
-        return nevh__fail(&r->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&r->report);
     b->a = b->memory;
     b->b = b->a + 2 * n;
     b->low = b->b + 2 * n;
@@ -193,7 +193,7 @@ int nevh__pair_init(nevh__pair *b) {
     b->difference = b->high + 2 * n;
     b->scale = b->difference + 2 * n;
     if (nevh__watch_init(&b->watch, r))
-        return nevh__fail(&r->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&r->report);
     int status = nevh_stepper_status(b->coarse);
     return status ? nevh__fail_as(&r->report, &b->coarse->report) : NEVH_OK;
 }

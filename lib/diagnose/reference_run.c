@@ -84,7 +84,7 @@ static int give_up(nevh__pair *b, const nevh__pair_outcome *o) {
     const nevh_stepper *s =
         nevh_stepper_status(b->coarse) ? b->coarse : b->fine;
     if (o->status == NEVH_ENOMEM)
-        return nevh__fail(report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(report);
     if (o->status)
         return nevh__fail(report, o->status, "%s as a reference: %s", name,
                           nevh_stepper_message(s));

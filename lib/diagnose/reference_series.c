@@ -80,10 +80,6 @@ static double longest(const nevh_reference *r, const chain *c) {
     return fmin(fmax(shortest, span / most), span / fewest);
 }
 
-static int out_of_memory(nevh_reference *r) {
-    return nevh__fail(&r->report, NEVH_ENOMEM, "out of memory");
-}
-
 static int plan(nevh_reference *r, chain *c, double tolerance) {
     bool damped = nevh_system_friction(r->system, c->rates);
     c->recurrence = nevh__recurrence_new(r->system, damped ? c->rates : NULL,
@@ -96,20 +92,20 @@ static int plan(nevh_reference *r, chain *c, double tolerance) {
                                                finer * tolerance) &&
            made;
     if (!made)
-        return out_of_memory(r);
+        return nevh__no_memory(&r->report);
     c->rows = 2 * r->n * (c->fine.order + 1);
     c->each = TIMES + c->rows;
     c->shown = nevh__array(c->rows, sizeof *c->shown);
     c->fine.longest = c->coarse.longest = longest(r, c);
     c->fine.timing = c->coarse.timing = r->timing;
     c->fine.backward = c->coarse.backward = r->t1 < r->t0;
-    return c->shown ? NEVH_OK : out_of_memory(r);
+    return c->shown ? NEVH_OK : nevh__no_memory(&r->report);
 }
 
 static int start(nevh_reference *r, chain *c) {
     nevh__wide *state = nevh__array(2 * r->n, sizeof *state);
     if (!state)
-        return out_of_memory(r);
+        return nevh__no_memory(&r->report);
     for (size_t k = 0; k < 2 * r->n; k++)
         state[k] = r->start[k];
     int status = NEVH__FINE(nevh__series_orbit_start)(&c->coarse, r->t0, state,
@@ -255,7 +251,7 @@ static int part_at(nevh_reference *r, chain *c) {
 
 /* Side by side, to the end or to where they part. */
 static int run(nevh_reference *r, chain *c) {
-    int status = keep(r, c) ? NEVH_OK : out_of_memory(r);
+    int status = keep(r, c) ? NEVH_OK : nevh__no_memory(&r->report);
     double forward = c->until > r->t0 ? 1 : -1;
     if (!status)
         look(r, c);
@@ -266,7 +262,7 @@ static int run(nevh_reference *r, chain *c) {
             status = NEVH__FINE(nevh__series_orbit_go)(&c->coarse, c->fine.t,
                                                        &r->report);
         if (!status && !keep(r, c))
-            status = out_of_memory(r);
+            status = nevh__no_memory(&r->report);
         if (status)
             break;
         look(r, c);
@@ -306,7 +302,7 @@ static chain *chain_new(nevh_reference *r, double tolerance,
                         const chain *first) {
     bool parted = first && first->parts;
     chain *c = nevh__array(1, sizeof *c);
-    int status = c ? NEVH_OK : out_of_memory(r);
+    int status = c ? NEVH_OK : nevh__no_memory(&r->report);
     if (!status) {
         *c =
             (chain){.until = parted ? first->until : r->t1,
@@ -316,7 +312,7 @@ static chain *chain_new(nevh_reference *r, double tolerance,
                     .value = nevh__array(2 * r->n, sizeof *c->value),
                     .difference = nevh__array(2 * r->n, sizeof *c->difference)};
         bool made = c->rates && c->value && c->difference;
-        status = made ? plan(r, c, tolerance) : out_of_memory(r);
+        status = made ? plan(r, c, tolerance) : nevh__no_memory(&r->report);
     }
     if (!status)
         status = start(r, c);

@@ -74,7 +74,7 @@ static int open_walk(nevh_reference *r) {
     if (!r->branch)
         r->branch = nevh__reference_stepper(r);
     if (!r->walker || !r->branch || !memo_open(&r->memo, r->n))
-        return nevh__fail(&r->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&r->report);
     return NEVH_OK;
 }
 

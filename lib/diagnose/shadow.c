@@ -82,10 +82,6 @@ static int check(nevh_shadow *s, const nevh_system *system,
     return NEVH_OK;
 }
 
-static int out_of_memory(nevh_shadow *s) {
-    return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
-}
-
 static const char *timed_effect(const nevh_system *s) {
     for (size_t i = 0; i < s->n_terms; i++)
         if (nevh__term_on(s, s->terms[i]) && s->terms[i]->decl.time)
@@ -133,13 +129,13 @@ static nevh_field *plan_field(nevh_shadow *s, const nevh_system *system,
 static int plan(nevh_shadow *s, const nevh_system *system,
                 const nevh_options *o) {
     size_t size = 2 * s->n;
-    s->scale = nevh__array(size, sizeof *s->scale);
-    s->zq = nevh__array(size * LANES, sizeof *s->zq);
-    s->zp = nevh__array(size * LANES, sizeof *s->zp);
-    s->gq = nevh__array(size * LANES, sizeof *s->gq);
-    s->gp = nevh__array(size * LANES, sizeof *s->gp);
-    if (!s->scale || !s->zq || !s->zp || !s->gq || !s->gp)
-        return out_of_memory(s);
+    s->zq = nevh__array(size * (4 * LANES + 1), sizeof *s->zq);
+    if (!s->zq)
+        return nevh__no_memory(&s->report);
+    s->zp = s->zq + size * LANES;
+    s->gq = s->zp + size * LANES;
+    s->gp = s->gq + size * LANES;
+    s->scale = s->gp + size * LANES;
     int status = plan_probe(s, system, o);
     if (!status) {
         nevh_options values = {.gradient = &nevh__no_gradient,
@@ -183,21 +179,11 @@ void nevh_shadow_free(nevh_shadow *s) {
     nevh_field_free(s->field);
     nevh_field_free(s->along);
     nevh__variational_free(s->variational);
-    free(s->scale);
     free(s->zq);
-    free(s->zp);
-    free(s->gq);
-    free(s->gp);
     free(s);
 }
 
-int nevh_shadow_status(const nevh_shadow *s) {
-    return s ? s->report.status : NEVH_ENOMEM;
-}
-
-const char *nevh_shadow_message(const nevh_shadow *s) {
-    return s ? s->report.text : "out of memory";
-}
+NEVH__REPORTS(shadow)
 
 int nevh_shadow_order(const nevh_shadow *s) {
     return s && s->planned ? s->series->order : 0;

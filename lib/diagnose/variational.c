@@ -253,7 +253,7 @@ nevh__variational *nevh__variational_new(const nevh_system *s,
                                          nevh__report *report) {
     nevh__variational *v = nevh__array(1, sizeof *v);
     if (!v)
-        nevh__fail(report, NEVH_ENOMEM, "out of memory");
+        nevh__no_memory(report);
     else if (!fill(v, s, scale, report))
         return v;
     nevh__variational_free(v);

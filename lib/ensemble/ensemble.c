@@ -7,10 +7,6 @@
 
 enum { WIDTH = 32, MOST_NUMBERS = 1 << 14 }; /* chosen; n times width */
 
-static int out_of_memory(nevh_ensemble *e) {
-    return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
-}
-
 /* Adds the needs of an outcome to those of the ensemble. */
 static void take_outcome(nevh_ensemble *e, size_t i) {
     const nevh__outcome_type *type = e->outcomes[i].type;
@@ -30,7 +26,7 @@ static int take_outcomes(nevh_ensemble *e) {
     e->crossing_of = nevh__array(e->n_outcomes, sizeof *e->crossing_of);
     e->crossings = nevh__array(e->n_outcomes, sizeof *e->crossings);
     if (!e->outcomes || !e->crossing_of || !e->crossings)
-        return out_of_memory(e);
+        return nevh__no_memory(&e->report);
     e->watches = e->is.stop.value;
     e->moving = e->is.stop.value && e->is.stop.velocities;
     for (size_t i = 0; i < e->n_outcomes; i++) {
@@ -66,7 +62,7 @@ static int repeat_state(nevh_ensemble *e, size_t width, nevh_options *o,
     o->width = width;
     *room = nevh__array(2 * e->n * width, sizeof **room);
     if (!*room)
-        return out_of_memory(e);
+        return nevh__no_memory(&e->report);
     for (size_t i = 0; i < e->n * width; i++) {
         (*room)[i] = o->q ? o->q[i / width] : 0;
         (*room)[e->n * width + i] = o->p ? o->p[i / width] : 0;
@@ -87,7 +83,7 @@ int nevh__ensemble_stepper(nevh_ensemble *e, const nevh_system *system,
     *s = nevh_stepper_new(system, e->is.integrator, &o);
     free(room);
     if (!*s)
-        return out_of_memory(e);
+        return nevh__no_memory(&e->report);
     return nevh_stepper_status(*s) ? nevh__fail_as(&e->report, &(*s)->report)
                                    : NEVH_OK;
 }
@@ -96,7 +92,7 @@ static int plan_energy(nevh_ensemble *e, const nevh_options *options) {
     nevh_options o = {.width = e->width, .portable = options->portable};
     e->energy = nevh_energy_new(e->system, &o);
     if (!e->energy)
-        return out_of_memory(e);
+        return nevh__no_memory(&e->report);
     if (e->is.energy_scale != 0)
         nevh_energy_set_scale(e->energy, e->is.energy_scale);
     nevh_energy_follow(e->energy, e->stepper);
@@ -116,7 +112,7 @@ static int plan_motion(nevh_ensemble *e, const nevh_options *options) {
         nevh_field_free(e->motion);
         e->motion = nevh_field_new(e->system, &o);
         if (!e->motion)
-            return out_of_memory(e);
+            return nevh__no_memory(&e->report);
         if (!nevh_field_status(e->motion))
             return NEVH_OK;
     }
@@ -182,7 +178,7 @@ static bool plan_root(nevh_ensemble *e) {
 
 static int plan_rooms(nevh_ensemble *e) {
     e->memory = nevh__arena_new(lay_out, e);
-    return e->memory && plan_root(e) ? NEVH_OK : out_of_memory(e);
+    return e->memory && plan_root(e) ? NEVH_OK : nevh__no_memory(&e->report);
 }
 
 static int plan_outcomes(nevh_ensemble *e, const nevh_options *options) {
@@ -288,13 +284,7 @@ void nevh__ensemble_set_stop(nevh_ensemble *e,
         e->ending = ending;
 }
 
-int nevh_ensemble_status(const nevh_ensemble *e) {
-    return e ? e->report.status : NEVH_ENOMEM;
-}
-
-const char *nevh_ensemble_message(const nevh_ensemble *e) {
-    return e ? e->report.text : "out of memory";
-}
+NEVH__REPORTS(ensemble)
 
 bool nevh_ensemble_native(const nevh_ensemble *e, const char **why) {
     return nevh_stepper_native(e ? e->stepper : NULL, why);

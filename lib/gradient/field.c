@@ -30,13 +30,7 @@ void nevh_field_free(nevh_field *f) {
     free(f);
 }
 
-int nevh_field_status(const nevh_field *f) {
-    return f ? f->report.status : NEVH_ENOMEM;
-}
-
-const char *nevh_field_message(const nevh_field *f) {
-    return f ? f->report.text : "out of memory";
-}
+NEVH__REPORTS(field)
 
 int nevh__field_ready(nevh_field *f) {
     if (!f->planned)

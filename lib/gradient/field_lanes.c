@@ -68,11 +68,11 @@ int nevh__field_lanes_plan(nevh_field *f, size_t lanes) {
                           "lanes cannot have constants of their own");
     for (size_t i = 0; i < f->n_terms; i++)
         if (!plan_term(&f->terms[i], lanes))
-            return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+            return nevh__no_memory(&f->report);
     f->chosen = nevh__array(lanes, sizeof *f->chosen);
     f->lane_scale = nevh__array(2 * f->n * lanes, sizeof *f->lane_scale);
     if (!f->chosen || !f->lane_scale)
-        return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&f->report);
     f->lanes = lanes;
     choose_all(f);
     return NEVH_OK;

@@ -222,13 +222,13 @@ static int open_probe(nevh_probe *b, const nevh_system *s) {
     b->start = nevh__array(2 * s->n, sizeof *b->start);
     b->state = nevh__array(2 * s->n, sizeof *b->state);
     if (!b->field || !b->start || !b->state)
-        return nevh__fail(&b->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&b->report);
     if (b->field->report.status)
         return nevh__fail_as(&b->report, &b->field->report);
     take_start(b);
     if (nevh__step_selection_init(&b->selection, b->field, &b->options) ||
         !nevh__find_samples(&b->selection))
-        return nevh__fail(&b->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&b->report);
     return ask(b);
 }
 
@@ -258,13 +258,7 @@ void nevh_probe_free(nevh_probe *b) {
     free(b);
 }
 
-int nevh_probe_status(const nevh_probe *b) {
-    return b ? b->report.status : NEVH_ENOMEM;
-}
-
-const char *nevh_probe_message(const nevh_probe *b) {
-    return b ? b->report.text : "out of memory";
-}
+NEVH__REPORTS(probe)
 
 nevh_finding nevh_probe_finding(const nevh_probe *b, nevh_question question) {
     if (!b || question >= NEVH_FINDINGS)

@@ -79,7 +79,7 @@ static int plan_term(nevh_field *f, const nevh__term_entry *term) {
     f->n_steps += rows * plan->nv;
     if (plan->delta && plan->steps && plan->vars)
         return NEVH_OK;
-    return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+    return nevh__no_memory(&f->report);
 }
 
 static size_t block_columns(size_t reads) {
@@ -102,7 +102,7 @@ static int plan_workspace(nevh_field *f) {
     f->workspace = nevh__array(rows * columns + 2 * reads + NEVH__LANES,
                                sizeof *f->workspace);
     if (!f->workspace)
-        return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&f->report);
     f->rows = nevh__aligned(f->workspace);
     f->slopes = f->rows + reads * columns;
     f->times = f->slopes + variables * columns;
@@ -115,7 +115,7 @@ static int plan_workspace(nevh_field *f) {
     f->broadcasts = nevh__exact_block_broadcasts(f);
     if (nevh__exact_gather_plan(f))
         return NEVH_OK;
-    return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+    return nevh__no_memory(&f->report);
 }
 
 /* The user's steps win, and are differenced at full order. */
@@ -189,7 +189,7 @@ int nevh__field_curvatures(nevh_field *f, const nevh_options *o,
     memset(curvature, 0, 2 * f->n * sizeof *curvature);
     double *changes = nevh__array(4 * f->n, sizeof *changes);
     if (!changes)
-        return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&f->report);
     int status = nevh__step_selection_init(&e, f, o);
     if (!status) {
         nevh__find_neighbours(&e);
@@ -211,7 +211,7 @@ static int plan_steps(nevh_field *f, const nevh_options *o) {
         arrange(f, &f->terms[i]);
     }
     if (!status && !nevh__central_stencil_plan(f))
-        status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+        status = nevh__no_memory(&f->report);
     return status;
 }
 
@@ -232,7 +232,7 @@ static int plan_gradient(nevh_field *f, const nevh_options *o) {
         status = nevh__field_verify(f, o);
     nevh__field_forget(f, status);
     if (!status && !nevh__single_plan(f))
-        status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+        status = nevh__no_memory(&f->report);
     return status;
 }
 
@@ -242,7 +242,7 @@ static int plan_field(nevh_field *f, const nevh_options *o) {
         return nevh__fail_as(&f->report, &s->report);
     int status = check_options(f, o);
     if (!status && !(f->scale = nevh__array(2 * f->n, sizeof(double))))
-        status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+        status = nevh__no_memory(&f->report);
     for (size_t i = 0; !status && i < 2 * f->n; i++)
         f->scale[i] = choose_scale(o, f->n, i);
     for (size_t i = 0; !status && i < s->n_terms; i++)

@@ -69,7 +69,7 @@ int nevh_field_energy_floor(nevh_field *f, double t, const double q[],
         return NEVH_EINVAL;
     double *v = nevh__array(4 * f->n, sizeof *v);
     if (!v)
-        return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&f->report);
     int status = nevh_field_gradient(f, 1, &t, q, p, v, v + f->n);
     if (!status)
         status = nevh__field_noise(f, t, q, p, v + 2 * f->n, v + 3 * f->n);

@@ -69,7 +69,7 @@ int nevh__step_selection_init(nevh__step_selection *e, nevh_field *f,
     e->samples.q = nevh__array((most + 1) * n, sizeof *e->samples.q);
     e->samples.p = nevh__array((most + 1) * n, sizeof *e->samples.p);
     if (!e->length || !e->samples.q || !e->samples.p)
-        return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&f->report);
     nevh__find_lengths(e);
     return NEVH_OK;
 }
@@ -86,7 +86,7 @@ int nevh__field_select_steps(nevh_field *f, const nevh_options *o) {
     if (!status)
         nevh__set_crude_steps(&e);
     if (!status && (!nevh__central_stencil_plan(f) || !nevh__find_samples(&e)))
-        status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+        status = nevh__no_memory(&f->report);
     nevh__central_stencils_clear(f); /* of crude steps */
     if (!status && !o->scale)
         set_scales(&e);
@@ -105,7 +105,7 @@ int nevh__field_verify(nevh_field *f, const nevh_options *o) {
         if (f->terms[i].nv)
             status = nevh__verify(&e, &f->terms[i]);
     if (!status && !nevh__keep_lengths(&e))
-        status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+        status = nevh__no_memory(&f->report);
     nevh__step_selection_clear(&e);
     return status;
 }
@@ -117,7 +117,7 @@ int nevh__field_find_scale(nevh_field *f, const nevh_options *o) {
     int status = nevh__step_selection_init(&e, f, o);
     e.scales_alone = true;
     if (!status && !nevh__find_samples(&e))
-        status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+        status = nevh__no_memory(&f->report);
     if (!status)
         set_scales(&e);
     f->scaled = !status;

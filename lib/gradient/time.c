@@ -248,7 +248,7 @@ int nevh__field_plan_time(nevh_field *f, const nevh_options *o,
     nevh__step_selection e;
     double *slopes = nevh__array(2 * f->n, sizeof *slopes);
     int status = slopes ? nevh__step_selection_init(&e, f, o)
-                        : nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+                        : nevh__no_memory(&f->report);
     if (!slopes)
         return status;
     if (!status) {
@@ -256,7 +256,7 @@ int nevh__field_plan_time(nevh_field *f, const nevh_options *o,
         choose_all(&e, slopes, steps);
         e.samples.count = e.neighbours;
         if (!nevh__find_samples(&e))
-            status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+            status = nevh__no_memory(&f->report);
     }
     if (!status)
         choose_all(&e, slopes, steps);

@@ -281,7 +281,7 @@ int nevh__verify(nevh__step_selection *e, const nevh__planned *term) {
     size_t count = term->term->decl.count, stride = nevh__stride(count);
     check c = {e, term, 0, nevh__array(term->nv, sizeof *c.own)};
     if (!c.own)
-        return nevh__fail(&e->field->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&e->field->report);
     int status = NEVH_OK;
     for (; !status && c.instance < count; c.instance += stride)
         for (size_t at = 0; !status && at < e->samples.count; at++)

@@ -21,7 +21,7 @@ int nevh__branch_open(nevh__branch *b, nevh_stepper *s) {
     b->stepper = s;
     b->q = nevh__array(4 * size + memory, sizeof *b->q);
     if (!b->q)
-        return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&s->report);
     b->p = b->q + size;
     b->q_end = b->p + size;
     b->p_end = b->q_end + size;

@@ -30,7 +30,7 @@ int nevh__plan_friction(nevh_stepper *s) {
         return NEVH_OK;
     s->rates = nevh__array(w->n, sizeof *s->rates);
     if (!s->rates)
-        return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&s->report);
     nevh_system_friction(w->system, s->rates);
     char name[NEVH__VARIABLE];
     for (size_t k = 0; k < w->n; k++)
@@ -60,7 +60,7 @@ int nevh__friction_step_plan(nevh_stepper *s) {
         return NEVH_OK;
     struct nevh__friction_step *d = s->friction = nevh__array(1, sizeof *d);
     if (!d)
-        return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&s->report);
     d->h = NAN;
     d->factor = nevh__array(w->n, sizeof *d->factor);
     d->remainder = nevh__array(w->n, sizeof *d->remainder);
@@ -70,7 +70,7 @@ int nevh__friction_step_plan(nevh_stepper *s) {
         nevh__array((w->memory_rows + w->n) * w->width, sizeof *d->before);
     if (d->factor && d->remainder && d->q && d->p && d->before)
         return NEVH_OK;
-    return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+    return nevh__no_memory(&s->report);
 }
 
 void nevh__friction_step_free(struct nevh__friction_step *d) {

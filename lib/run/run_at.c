@@ -240,7 +240,7 @@ static int plan(nevh__samples *a) {
 nevh__samples *nevh__samples_new(const nevh__running *r) {
     nevh__samples *a = calloc(1, sizeof *a);
     if (!a) {
-        nevh__fail(&r->stepper->report, NEVH_ENOMEM, "out of memory");
+        nevh__no_memory(&r->stepper->report);
         return NULL;
     }
     *a = (nevh__samples){.run = r,

@@ -22,10 +22,6 @@ static int check(nevh_sections *x, const nevh_section *decl, size_t number) {
                       number);
 }
 
-static int out_of_memory(nevh_sections *x) {
-    return nevh__fail(&x->report, NEVH_ENOMEM, "out of memory");
-}
-
 static int plan_state(nevh_sections *x, size_t i, const nevh_section *decl) {
     nevh__section_state *k = &x->states[i];
     size_t n = x->branch->work.n;
@@ -36,7 +32,7 @@ static int plan_state(nevh_sections *x, size_t i, const nevh_section *decl) {
     k->p = nevh__array(n, sizeof *k->p);
     x->crossings |= decl->value != NULL;
     if (!k->q || !k->p || (decl->name && !k->decl.name))
-        return out_of_memory(x);
+        return nevh__no_memory(&x->report);
     return check(x, decl, i);
 }
 
@@ -45,10 +41,10 @@ static int plan_solvers(nevh_sections *x) {
     void *trial = nevh__array(128, sizeof(double));
     free(trial);
     if (!trial)
-        return out_of_memory(x);
+        return nevh__no_memory(&x->report);
     x->root = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
     x->least = gsl_min_fminimizer_alloc(gsl_min_fminimizer_brent);
-    return x->root && x->least ? NEVH_OK : out_of_memory(x);
+    return x->root && x->least ? NEVH_OK : nevh__no_memory(&x->report);
 }
 
 static int plan_states(nevh_sections *x) {
@@ -57,7 +53,7 @@ static int plan_states(nevh_sections *x) {
     x->q = nevh__array(6 * n, sizeof *x->q);
     x->memory = nevh__array(s->rows * s->work.width, sizeof *x->memory);
     if (!x->q || !x->memory)
-        return out_of_memory(x);
+        return nevh__no_memory(&x->report);
     x->p = x->q + n;
     x->q_try = x->p + n;
     x->p_try = x->q_try + n;
@@ -119,13 +115,7 @@ void nevh_sections_free(nevh_sections *x) {
     free(x);
 }
 
-int nevh_sections_status(const nevh_sections *x) {
-    return x ? x->report.status : NEVH_ENOMEM;
-}
-
-const char *nevh_sections_message(const nevh_sections *x) {
-    return x ? x->report.text : "out of memory";
-}
+NEVH__REPORTS(sections)
 
 nevh_counts nevh_sections_counts(const nevh_sections *x) {
     if (!x)

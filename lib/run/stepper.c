@@ -35,7 +35,7 @@ static int plan_memory(nevh_stepper *s) {
     s->before = nevh__array(s->rows * w->width, sizeof(double));
     if (w->memory && w->scratch && s->last_q && s->last_p && s->before)
         return NEVH_OK;
-    return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+    return nevh__no_memory(&s->report);
 }
 
 static int plan_field(nevh_stepper *s) {
@@ -44,7 +44,7 @@ static int plan_field(nevh_stepper *s) {
         s->options.gradient = nevh__best_gradient(w->system);
     w->field = nevh_field_new(w->system, &s->options);
     if (!w->field)
-        return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&s->report);
     return w->field->report.status
                ? nevh__fail_as(&s->report, &w->field->report)
                : NEVH_OK;
@@ -167,13 +167,7 @@ void nevh_stepper_free(nevh_stepper *s) {
     free(s);
 }
 
-int nevh_stepper_status(const nevh_stepper *s) {
-    return s ? s->report.status : NEVH_ENOMEM;
-}
-
-const char *nevh_stepper_message(const nevh_stepper *s) {
-    return s ? s->report.text : "out of memory";
-}
+NEVH__REPORTS(stepper)
 
 static void forget_lane(nevh_stepper *s, size_t lane) {
     nevh_work *w = &s->work;

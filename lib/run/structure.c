@@ -124,7 +124,7 @@ int nevh__check_structure(nevh_stepper *s) {
     double *q = first_lane(w, s->options.q), *p = first_lane(w, s->options.p);
     int status = NEVH_OK;
     if ((s->options.q && !q) || (s->options.p && !p))
-        status = nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+        status = nevh__no_memory(&s->report);
     if (!status && missing & NEVH_SEPARABLE)
         status = check_separable(s, q, p);
     if (!status && missing & NEVH_QUADRATIC_KINETIC)

@@ -455,7 +455,7 @@ static int run(nevh_sweep *s, nevh_wanted_fn wanted, nevh_sweep_fn tell_fn,
     free(all);
     close_window(s);
     if (!ready || s->failed)
-        return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&s->report);
     bool ended = s->ending;
     s->ending = 0;
     return s->stopped || ended

@@ -55,9 +55,8 @@ int nevh_scene_member_start(nevh_scene *s, uint64_t member, double q[],
     nevh_sweep sweep = {.scene = s, .ensemble = s->model->ensemble};
     double *varied = nevh__array(sweep.ensemble->n_varied, sizeof *varied);
     double *v = nevh__array(s->model->n, sizeof *v);
-    int status = varied && v
-                     ? find(&sweep, member, varied, q, p, v, &report)
-                     : nevh__fail(&report, NEVH_ENOMEM, "out of memory");
+    int status = varied && v ? find(&sweep, member, varied, q, p, v, &report)
+                             : nevh__no_memory(&report);
     free(varied);
     free(v);
     return status ? refuse(s, status, report.text) : NEVH_OK;

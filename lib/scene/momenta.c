@@ -420,9 +420,7 @@ static int solve(search *s, nevh__report *report) {
 int nevh__momenta_find(const nevh__scene_model *m, double q[], double p[],
                        nevh__report *report) {
     search s = {.m = m, .q = q, .p = p, .part = 1};
-    int status = take_memory(&s)
-                     ? solve(&s, report)
-                     : nevh__fail(report, NEVH_ENOMEM, "out of memory");
+    int status = take_memory(&s) ? solve(&s, report) : nevh__no_memory(report);
     done(&s);
     return status;
 }

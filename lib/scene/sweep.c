@@ -6,10 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int out_of_memory(nevh_sweep *s) {
-    return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
-}
-
 static bool name_column(nevh_sweep *s, const char *format, const char *name) {
     char *text = nevh__text(format, name);
     s->names[s->columns++] = text;
@@ -68,7 +64,7 @@ static int take_outcomes(nevh_sweep *s) {
     s->names = nevh__array(most, sizeof *s->names);
     s->types = nevh__array(most, sizeof *s->types);
     if (!s->names || !s->types || !name_columns(s))
-        return out_of_memory(s);
+        return nevh__no_memory(&s->report);
     return check_names(s);
 }
 
@@ -80,7 +76,7 @@ static int try(nevh_sweep *s) {
     double *room = nevh__array(2 * m->n, sizeof *room);
     nevh_ensemble *e = NULL;
     if (!room)
-        out_of_memory(s);
+        nevh__no_memory(&s->report);
     else if (nevh__variant_make(s, NULL, &x, &s->report)) {
         nevh_ensemble_options is = nevh__variant_options(s, &x, &o, room);
         if (!(is.dt > 0))
@@ -88,7 +84,7 @@ static int try(nevh_sweep *s) {
         else if (isnan(is.t_end))
             nevh__fail(&s->report, NEVH_EINVAL, "there is no end of the run");
         else if (!(e = nevh_ensemble_new(x.model->system, &is)))
-            out_of_memory(s);
+            nevh__no_memory(&s->report);
         else if (nevh_ensemble_status(e))
             nevh__fail(&s->report, nevh_ensemble_status(e), "%s",
                        nevh_ensemble_message(e));
@@ -147,13 +143,7 @@ void nevh_sweep_free(nevh_sweep *s) {
     free(s);
 }
 
-int nevh_sweep_status(const nevh_sweep *s) {
-    return s ? s->report.status : NEVH_ENOMEM;
-}
-
-const char *nevh_sweep_message(const nevh_sweep *s) {
-    return s ? s->report.text : "out of memory";
-}
+NEVH__REPORTS(sweep)
 
 uint64_t nevh_sweep_members(const nevh_sweep *s) {
     if (!s)

@@ -31,7 +31,7 @@ static int append(nevh_system *s, const char *name, const double rates[]) {
     size_t effect = copy ? nevh__effect_index(s, name) : SIZE_MAX;
     if (effect == SIZE_MAX) {
         free(copy);
-        return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&s->report);
     }
     all[s->n_frictions++] = (nevh__friction){effect, copy};
     s->revision++;

@@ -54,9 +54,8 @@ int nevh_system_add_masses(nevh_system *s, const char *effect,
         return status;
     size_t *index = nevh__array(s->n, sizeof *index);
     double *inverse = nevh__array(s->n, sizeof *inverse);
-    status = index && inverse
-                 ? add(s, effect, masses, index, inverse)
-                 : nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+    status = index && inverse ? add(s, effect, masses, index, inverse)
+                              : nevh__no_memory(&s->report);
     free(index);
     free(inverse);
     return status;

@@ -39,6 +39,10 @@ int nevh__fail(nevh__report *report, int status, const char *format, ...) {
     return status;
 }
 
+int nevh__no_memory(nevh__report *report) {
+    return nevh__fail(report, NEVH_ENOMEM, "out of memory");
+}
+
 int nevh__fail_as(nevh__report *report, const nevh__report *other) {
     *report = *other;
     return report->status;

@@ -57,7 +57,7 @@ static int check_indices(nevh_system *s, const nevh_term *term, char kind,
 static int check_tables(nevh_system *s, const nevh_term *term) {
     bool *read = nevh__array(s->n, sizeof *read);
     if (!read)
-        return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&s->report);
     int status = check_indices(s, term, 'q', term->q, term->nq, read);
     if (!status)
         status = check_indices(s, term, 'p', term->p, term->np, read);
@@ -164,14 +164,14 @@ static int append(nevh_system *s, const nevh_term *from) {
     nevh__term_entry **terms =
         nevh__grow(s->terms, s->n_terms + 1, sizeof(nevh__term_entry *));
     if (!terms)
-        return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&s->report);
     s->terms = terms;
     nevh__term_entry *term =
         nevh__register_reserve(&s->term_names) ? copy_term(s, from) : NULL;
     size_t effect = term ? nevh__effect_index(s, from->effect) : SIZE_MAX;
     if (effect == SIZE_MAX) {
         term_free(term);
-        return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&s->report);
     }
     term->effect = effect;
     term->decl.effect = s->effects[effect].name;
@@ -271,13 +271,7 @@ const char *nevh__variable_name(const nevh_system *s, bool momentum, size_t i,
     return text;
 }
 
-int nevh_system_status(const nevh_system *s) {
-    return s ? s->report.status : NEVH_ENOMEM;
-}
-
-const char *nevh_system_message(const nevh_system *s) {
-    return s ? s->report.text : "out of memory";
-}
+NEVH__REPORTS(system)
 
 size_t nevh_system_dof(const nevh_system *s) {
     return s ? s->n : 0;

@@ -37,6 +37,17 @@ int nevh__fail(nevh__report *, int status, const char *format, ...)
 int nevh__vfail(nevh__report *, int status, const char *format, va_list);
 /* Takes over another object's failure. */
 int nevh__fail_as(nevh__report *, const nevh__report *other);
+/* The same where memory is out. */
+int nevh__no_memory(nevh__report *);
+/* Defines nevh_NAME_status and nevh_NAME_message of a nevh_NAME that has a report;
+   NULL is one for which there was no memory. */
+#define NEVH__REPORTS(name)                                                    \
+    int nevh_##name##_status(const nevh_##name *x) {                           \
+        return x ? x->report.status : NEVH_ENOMEM;                             \
+    }                                                                          \
+    const char *nevh_##name##_message(const nevh_##name *x) {                  \
+        return x ? x->report.text : "out of memory";                           \
+    }
 
 /* Memory; each returns NULL when it is out or the size overflows.  A request
    for nothing gives memory all the same. */

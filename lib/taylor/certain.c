@@ -53,7 +53,7 @@ static int start(nevh_certain *c, orbit *o, bool pairs, double tolerance) {
             : nevh__series_orbit_init_quad(&o->quad, c->recurrence, tolerance);
     o->dd.timing = o->quad.timing = c->timing;
     o->dd.backward = o->quad.backward = c->seen < (double)c->t0;
-    return !fine      ? nevh__fail(&c->report, NEVH_ENOMEM, "out of memory")
+    return !fine      ? nevh__no_memory(&c->report)
            : o->pairs ? nevh__series_orbit_start_dd(&o->dd, c->t0, c->start,
                                                     &c->report)
                       : nevh__series_orbit_start_quad(&o->quad, c->t0, c->start,
@@ -121,7 +121,7 @@ static int make(nevh_certain *c, const nevh_system *system,
     c->n = n;
     c->start = nevh__array(2 * n, sizeof *c->start);
     if (!c->start)
-        return nevh__fail(&c->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&c->report);
     memcpy(c->start, from->q, n * sizeof *c->start);
     memcpy(c->start + n, from->p, n * sizeof *c->start);
     c->t0 = from->t;
@@ -261,7 +261,7 @@ static int look_ahead(nevh_certain *c, double t) {
         timing = timing_until(c, seen = t);
     }
     if (!timing)
-        return nevh__fail(&c->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&c->report);
     if (!nevh_timing_whole(timing)) {
         nevh_timing_free(timing);
         return nevh__fail(&c->report, NEVH_EFAILED,
@@ -421,13 +421,7 @@ char *nevh_certain_number(double number, long double rest) {
 }
 #endif
 
-int nevh_certain_status(const nevh_certain *c) {
-    return c ? c->report.status : NEVH_ENOMEM;
-}
-
-const char *nevh_certain_message(const nevh_certain *c) {
-    return c ? c->report.text : "out of memory";
-}
+NEVH__REPORTS(certain)
 
 int nevh_certain_go(nevh_certain *c, double t) {
     return nevh_certain_go_to(c, t, 0);

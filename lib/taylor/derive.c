@@ -30,7 +30,7 @@ static int out_of_memory(const reader *r) {
                             "H has more than %d operations with its "
                             "derivatives: too many for a Taylor series",
                             NEVH__GRAPH_NODES)
-               : nevh__fail(r->report, NEVH_ENOMEM, "out of memory");
+               : nevh__no_memory(r->report);
 }
 
 /* NULL: its series is known. */

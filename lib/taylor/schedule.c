@@ -268,7 +268,7 @@ nevh__recurrence *nevh__recurrence_wide(const nevh_system *system,
     if (!status && !schedule(r, &g, slope))
         status = NEVH_ENOMEM;
     if (status == NEVH_ENOMEM)
-        nevh__fail(report, NEVH_ENOMEM, "out of memory");
+        nevh__no_memory(report);
     nevh__graph_clear(&g);
     free(slope);
     if (!status)
@@ -288,7 +288,7 @@ nevh__recurrence *nevh__recurrence_new(const nevh_system *system,
     nevh__recurrence *r =
         rates ? nevh__recurrence_wide(system, rates, broken, report) : NULL;
     if (!rates)
-        nevh__fail(report, NEVH_ENOMEM, "out of memory");
+        nevh__no_memory(report);
     free(rates);
     return r;
 }

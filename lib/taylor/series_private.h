@@ -112,46 +112,26 @@ void nevh__recurrence_free(nevh__recurrence *); /* NULL is allowed */
     "the series at t = %.9g is not finite: H has no derivatives there, the "   \
     "state is out of its domain, or a value is beyond 1e308"
 
-/* Room to take coefficients up to an order in. */
-typedef struct nevh__series_double nevh__series_double;
-nevh__series_double *nevh__series_new_double(const nevh__recurrence *,
-                                             size_t order);
-void nevh__series_free_double(nevh__series_double *);
-/* From now on time is counted in that unit: 1 at first.  By powers of two this
-   changes nothing but the exponents of coefficients. */
-void nevh__series_in_double(nevh__series_double *, double unit);
-/* The coefficients at a state: rows of 2n, from that of order 0, the state
-   itself, on.  Returns whether they are finite. */
-bool nevh__series_expand_double(nevh__series_double *, double t,
-                                const double state[], double rows[]);
-/* The watched nodes at that state, for nevh__domain_reach. */
-const double *nevh__series_watched_double(const nevh__series_double *);
-
-/* The same in numbers of other kinds. */
-typedef struct nevh__series_long nevh__series_long;
-nevh__series_long *nevh__series_new_long(const nevh__recurrence *,
-                                         size_t order);
-void nevh__series_free_long(nevh__series_long *);
-void nevh__series_in_long(nevh__series_long *, double unit);
-bool nevh__series_expand_long(nevh__series_long *, long double t,
-                              const long double state[], long double rows[]);
-const double *nevh__series_watched_long(const nevh__series_long *);
+/* Memory to expand series up to an order in, in numbers of one kind. */
+#define NEVH__SERIES(kind, real, number)                                         \
+    typedef struct nevh__series_##kind nevh__series_##kind;                      \
+    nevh__series_##kind *nevh__series_new_##kind(const nevh__recurrence *,       \
+                                                 size_t order);                  \
+    void nevh__series_free_##kind(nevh__series_##kind *);                        \
+    /* From now on time is counted in that unit: 1 at first.  By powers of two \
+       this changes nothing but the exponents of coefficients. */ \
+    void nevh__series_in_##kind(nevh__series_##kind *, double unit);             \
+    /* The coefficients at a state: rows of 2n, from that of order 0, the      \
+       state itself, on.  Returns whether they are finite. */ \
+    bool nevh__series_expand_##kind(nevh__series_##kind *, real t,               \
+                                    const real state[], number rows[]);          \
+    /* The watched nodes at that state, for nevh__domain_reach. */               \
+    const double *nevh__series_watched_##kind(const nevh__series_##kind *);
+NEVH__SERIES(double, double, double)
+NEVH__SERIES(long, long double, long double)
 #ifdef NEVH_QUADMATH
-typedef struct nevh__series_quad nevh__series_quad;
-nevh__series_quad *nevh__series_new_quad(const nevh__recurrence *,
-                                         size_t order);
-void nevh__series_free_quad(nevh__series_quad *);
-void nevh__series_in_quad(nevh__series_quad *, double unit);
-bool nevh__series_expand_quad(nevh__series_quad *, nevh__wide t,
-                              const nevh__wide state[], nevh__wide rows[]);
-const double *nevh__series_watched_quad(const nevh__series_quad *);
-typedef struct nevh__series_dd nevh__series_dd;
-nevh__series_dd *nevh__series_new_dd(const nevh__recurrence *, size_t order);
-void nevh__series_free_dd(nevh__series_dd *);
-void nevh__series_in_dd(nevh__series_dd *, double unit);
-bool nevh__series_expand_dd(nevh__series_dd *, nevh__wide t,
-                            const nevh__wide state[], nevh__dd rows[]);
-const double *nevh__series_watched_dd(const nevh__series_dd *);
+NEVH__SERIES(quad, nevh__wide, nevh__wide)
+NEVH__SERIES(dd, nevh__wide, nevh__dd)
 #endif
 
 #endif

@@ -228,7 +228,7 @@ TEST_EACH(fields, 5) {
         .system = s,
         .options = {.gradient = _i == 4 ? nevh_exact : nevh_gradients()[_i]}};
     ck_assert_uint_ge(starve(make_field, &a), 9);
-    ck_assert_uint_ge(starve(make_energy, &a), 12);
+    ck_assert_uint_ge(starve(make_energy, &a), 6);
     nevh_system_free(s);
 }
 

@@ -101,9 +101,8 @@ static int plan_chaos(nevh_ensemble *e, const nevh_options *options) {
     if (nevh_chaos_status(x->chaos))
         return nevh__fail(&e->report, nevh_chaos_status(x->chaos), "%s",
                           nevh_chaos_message(x->chaos));
-    return nevh__chaos_batch_plan(x->chaos)
-               ? NEVH_OK
-               : nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
+    return nevh__chaos_batch_plan(x->chaos) ? NEVH_OK
+                                            : nevh__no_memory(&e->report);
 }
 
 int nevh__chaotic_plan(nevh_ensemble *e, const nevh_options *options) {
@@ -111,7 +110,7 @@ int nevh__chaotic_plan(nevh_ensemble *e, const nevh_options *options) {
     nevh__chaotic *x = e->chaotic =
         nevh__array(1, sizeof *x + (lanes + QUEUE * each) * sizeof(double));
     if (!x || !(x->queue = nevh__array(QUEUE, sizeof *x->queue)))
-        return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&e->report);
     x->began = x->numbers;
     for (size_t i = 0; i < QUEUE; i++) {
         x->queue[i].start = x->numbers + lanes + i * each;

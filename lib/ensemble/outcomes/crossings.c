@@ -111,7 +111,7 @@ static bool plan_lanes(nevh_ensemble *e) {
 int nevh__ensemble_plan_crossings(nevh_ensemble *e) {
     crossing *data = nevh__array(e->n_crossings, sizeof *data);
     if (!data)
-        return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
+        return nevh__no_memory(&e->report);
     for (size_t i = 0; i < e->n_crossings; i++) {
         const nevh_outcome *o = &e->outcomes[e->crossing_of[i]].decl;
         data[i] = (crossing){e, e->crossing_of[i]};
@@ -126,7 +126,7 @@ int nevh__ensemble_plan_crossings(nevh_ensemble *e) {
         return nevh__fail_as(&e->report, &e->sections->report);
     return e->sections && (e->alone || plan_lanes(e))
                ? NEVH_OK
-               : nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
+               : nevh__no_memory(&e->report);
 }
 
 void nevh__ensemble_free_crossings(nevh_ensemble *e) {

@@ -19,7 +19,7 @@ static int plan(nevh_ensemble *e, size_t outcome, const nevh_options *o) {
                           e->is.integrator->name);
     for (size_t lane = 0; lane < e->width; lane++)
         if (!(records[lane] = nevh_spectral_samples_new(MOST_SAMPLES)))
-            return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
+            return nevh__no_memory(&e->report);
     return NEVH_OK;
 }
 
