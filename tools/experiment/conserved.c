@@ -33,7 +33,7 @@ static nevh_stepper *stepper_of(const plan *p) {
    be freed. */
 static double *changes(const plan *p, double t_end, double tolerance) {
     plan trial = *p;
-    double *q = tool_allocate(2 * p->n, sizeof *q), *m = q + p->n, stopped;
+    double stopped;
     trial.t_end = t_end;
     trial.tolerance = &tolerance;
     trial.tolerances = 1;
@@ -42,13 +42,10 @@ static double *changes(const plan *p, double t_end, double tolerance) {
     invariants *kept = invariants_new(&trial);
     nevh_observer observers[] = {{invariants_observe, kept, 1},
                                  {stop_costly, s, 1}};
-    memcpy(q, p->q, p->n * sizeof *q);
-    memcpy(m, p->p, p->n * sizeof *m);
     bool good = !nevh_stepper_status(s) &&
-                !plan_run(&trial, s, p->dt[0], q, m, observers, 2, &stopped);
+                !plan_run(&trial, s, p->dt[0], observers, 2, &stopped);
     double *change = invariants_result(kept);
     nevh_stepper_free(s);
-    free(q);
     if (!good) {
         free(change);
         change = NULL;

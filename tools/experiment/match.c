@@ -14,15 +14,13 @@ static const double hopeless = 1.3; /* a price above the least met */
 /* Gradients in a step of dt, on the average, until the scene wants to stop; NAN
    where it fails. */
 static double work_of_step(const plan *p, const row *r, double dt) {
-    size_t size = p->n * sizeof(double), steps = PILOT_STEPS;
-    double *q = tool_allocate(2 * p->n, sizeof *q);
+    size_t steps = PILOT_STEPS;
+    double *q = plan_state(p);
     nevh_stepper *s = row_stepper(p, r, false);
     nevh_counts before = nevh_stepper_counts(s);
     double most = floor((p->t_end - p->run->t_start) / dt);
     if (most < PILOT_STEPS)
         steps = most < 1 ? 1 : (size_t)most;
-    memcpy(q, p->q, size);
-    memcpy(q + p->n, p->p, size);
     stop end = {.scene = p->scene};
     int status = nevh_run(s, p->run->t_start, dt, steps, q, q + p->n,
                           &(nevh_observer){stop_observe, &end, 1},

@@ -277,6 +277,13 @@ void plan_free(plan *p) {
     nevh_scene_free(p->scene);
 }
 
+double *plan_state(const plan *p) {
+    double *state = tool_allocate(2 * p->n, sizeof *state);
+    memcpy(state, p->q, p->n * sizeof *state);
+    memcpy(state + p->n, p->p, p->n * sizeof *state);
+    return state;
+}
+
 nevh_options plan_options(const plan *p, const char *gradient) {
     return (nevh_options){.gradient = nevh_gradient_named(gradient),
                           .gradient_step = p->gradient_step,

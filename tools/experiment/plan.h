@@ -54,6 +54,8 @@ char *plan_title(const nevh_scene *, const char *name, const options *);
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int plan_make(plan *, const options *);
 void plan_free(plan *);
+/* A copy of the start: coordinates, then momenta; to be freed. */
+double *plan_state(const plan *);
 nevh_options plan_options(const plan *, const char *gradient);
 /* Steps of h that the whole run takes. */
 double plan_steps(const plan *, double h);
@@ -131,11 +133,25 @@ typedef struct {
 int stop_observe(void *, size_t step, double t, const double q[],
                  const double p[]);
 /* nevh_run_until, from the plan's start to its end, or to where it is to stop.
-   q, m     in and out, n each
    stopped  out: the time where it was to stop; NAN
    returns  as nevh_run_until; NEVH_OK where the run came to either end */
-int plan_run(const plan *, nevh_stepper *, double dt, double q[], double m[],
-             const nevh_observer[], size_t count, double *stopped);
+int plan_run(const plan *, nevh_stepper *, double dt, const nevh_observer[],
+             size_t count, double *stopped);
+/* The same from another state, by the first dt.
+   q, m  in and out, n each */
+int plan_run_from(const plan *, nevh_stepper *, double q[], double m[],
+                  const nevh_observer[], size_t count, double *stopped);
+
+/* stability.c: a nevh_observe_fn that observes the energy, and stops where its error is above the
+   limit. */
+typedef struct {
+    nevh_energy *energy;
+    double limit, t; /* t: of the last state seen, as `step` */
+    size_t step;
+    bool passed; /* the limit */
+} energy_limit;
+int energy_limit_observe(void *, size_t step, double t, const double q[],
+                         const double p[]);
 char *stop_words(const plan *, double t);
 
 /* The period of the coordinate that is shown; 0: none, or it is no coordinate. */

@@ -7,40 +7,6 @@
 #include <string.h>
 #include <time.h>
 
-typedef struct {
-    const plan *plan;
-    row *row;
-    double *q, *p;
-} row_job;
-
-typedef struct {
-    nevh_energy *energy;
-    double limit, since;
-} watch;
-
-/* Errors are asked for after every step, which costs more than a step may: this
-   is for a run that is known to become unstable. */
-static int stop_when_unstable(void *data, size_t step, double t,
-                              const double q[], const double p[]) {
-    watch *w = data;
-    int status = nevh_energy_observe(w->energy, step, t, q, p);
-    if (!status && fabs(nevh_energy_error(w->energy, 0)) > w->limit)
-        return w->since = t, NEVH_STOPPED;
-    return status;
-}
-
-static void go_to_start(const row_job *w) {
-    memcpy(w->q, w->plan->q, w->plan->n * sizeof *w->q);
-    memcpy(w->p, w->plan->p, w->plan->n * sizeof *w->p);
-}
-
-static int run(const row_job *w, nevh_stepper *s,
-               const nevh_observer observers[], size_t count, double *stopped) {
-    go_to_start(w);
-    return plan_run(w->plan, s, w->row->step, w->q, w->p, observers, count,
-                    stopped);
-}
-
 nevh_energy *row_energy(const plan *p, const row *r, const nevh_stepper *s) {
     nevh_options o = plan_options(p, r->gradient);
     nevh_energy *energy = nevh_energy_new(p->system, &o);
@@ -55,20 +21,18 @@ nevh_energy *row_energy(const plan *p, const row *r, const nevh_stepper *s) {
 }
 
 /* The run itself, or what follows it. */
-static void unstable_since(row_job *w) {
-    bool balance = w->plan->balance;
-    nevh_stepper *s = row_stepper(w->plan, w->row, balance);
-    watch unstable = {row_energy(w->plan, w->row, s), w->row->energy.limit,
-                      NAN};
+static void unstable_since(const plan *p, row *r) {
+    nevh_stepper *s = row_stepper(p, r, p->balance);
+    energy_limit e = {row_energy(p, r, s), .limit = r->energy.limit};
     double stopped;
-    run(w, s, &(nevh_observer){stop_when_unstable, &unstable, 1}, 1, &stopped);
-    free(w->row->status);
-    w->row->status =
-        isnan(unstable.since)
-            ? text_print("unstable: after t = %.9g", w->plan->t_end)
-            : text_print("unstable: since t = %.9g", unstable.since);
-    nevh_energy_free(unstable.energy);
-    row_stepper_keep(w->plan, w->row, balance, s);
+    /* Errors are asked for after every step, which costs more than a step may. */
+    plan_run(p, s, r->step, &(nevh_observer){energy_limit_observe, &e, 1}, 1,
+             &stopped);
+    free(r->status);
+    r->status = e.passed ? text_print("unstable: since t = %.9g", e.t)
+                         : text_print("unstable: after t = %.9g", p->t_end);
+    nevh_energy_free(e.energy);
+    row_stepper_keep(p, r, p->balance, s);
 }
 
 /* Values over instances, of which there is a whole number. */
@@ -84,12 +48,12 @@ nevh_counts row_counts(const nevh_stepper *s, nevh_counts before) {
 }
 
 /* The mean over all steps tried, those too long for the tolerance included. */
-static double mean_step(const row_job *w) {
-    int each = nevh_integrator_gradients(w->row->scheme);
-    double evaluations = (double)w->row->counts.gradients;
+static double mean_step(const plan *p, const row *r) {
+    int each = nevh_integrator_gradients(r->scheme);
+    double evaluations = (double)r->counts.gradients;
     if (each == 0 || evaluations == 0)
-        return w->row->dt;
-    return (w->row->t_end - w->plan->run->t_start) * each / evaluations;
+        return r->dt;
+    return (r->t_end - p->run->t_start) * each / evaluations;
 }
 
 /* A compiler is waited for no longer than the row's own work takes. */
@@ -178,74 +142,108 @@ static void explain_unknown(const plan *p, row *r, const char *why) {
                  "the reference has no state: %s", message);
 }
 
-static void run_observed(row_job *w, nevh_stepper *s) {
-    row *r = w->row;
-    work_watch wait = {w->plan, r->scheme, s, nevh_stepper_counts(s), false};
-    nevh_energy *energy = row_energy(w->plan, w->row, s);
-    nevh_state_error *state = nevh_state_error_new(w->plan->reference);
-    invariants *kept = w->plan->diagnostics ? invariants_new(w->plan) : NULL;
-    nevh_shadow *shadow = row_shadow(w->plan, r);
-    observable shown = {w->plan, 0};
-    nevh_observer observers[7] = {{nevh_energy_observe, energy, 1}};
-    energy_trace trace = {r->errors, energy};
-    size_t count = 1;
-    if (state)
-        nevh_state_error_follow(state, s);
-    if (state && (w->plan->observable || w->plan->energies))
-        nevh_state_error_hand(state, compare_pair, &shown);
-    if (w->plan->energies)
-        energies_begin(w->plan->energies);
-    if (r->errors)
-        observers[count++] = (nevh_observer){energy_trace_observe, &trace, 1};
-    if (state)
-        observers[count++] =
-            (nevh_observer){nevh_state_error_observe, state, 1};
-    if (kept)
-        observers[count++] = (nevh_observer){invariants_observe, kept, 1};
-    if (shadow)
-        observers[count++] = (nevh_observer){shadow_observe, shadow, 1};
-    bound_watch keeps = {r->error_bound, energy, state, &shown};
-    double steps = (w->plan->t_end - w->plan->run->t_start) / r->step;
-    if (r->error_bound)
-        observers[count++] = (nevh_observer){observe_error_bound, &keeps,
-                                             1 + (size_t)(steps / LOOKS)};
-    if (w->plan->work_limit > 0)
-        observers[count++] =
-            (nevh_observer){observe_work, &wait, w->plan->n < 8 ? 8 : 1};
-    double begin = cpu_seconds();
-    int status = run(w, s, observers, count, &r->stopped);
-    r->observed_seconds = cpu_seconds() - begin;
-    r->t_end = status                 ? nevh_stepper_time(s)
-               : isfinite(r->stopped) ? r->stopped
-                                      : w->plan->t_end;
-    const char *why = wait.over_limit          ? "it takes too long"
-                      : status == NEVH_STOPPED ? nevh_energy_message(energy)
-                                               : nevh_stepper_message(s);
-    r->energy = nevh_energy_result(energy, 0);
-    r->passed = nevh_energy_passed(energy, &r->passed_effect);
-    r->steps = nevh_stepper_taken(s);
-    r->counts = row_counts(s, wait.before);
-    r->over_limit = wait.over_limit;
+/* The observers of a run; NULL: it is not observed for that. */
+typedef struct {
+    nevh_energy *energy;
+    nevh_state_error *state;
+    invariants *kept;
+    nevh_shadow *shadow;
+    observable shown;
+    energy_trace trace;
+    bound_watch bound;
+    work_watch work;
+    nevh_observer all[7];
+    size_t count;
+} row_observers;
+
+static void add_observer(row_observers *o, nevh_observe_fn observe, void *data,
+                         double every) {
+    if (data)
+        o->all[o->count++] = (nevh_observer){observe, data, (size_t)every};
+}
+
+/* Lists the observers, which refer to each other; the energy comes first. */
+static void observe_all(row_observers *o, const plan *p, row *r) {
+    double steps = (p->t_end - p->run->t_start) / r->step;
+    add_observer(o, nevh_energy_observe, o->energy, 1);
+    add_observer(o, energy_trace_observe, r->errors ? &o->trace : NULL, 1);
+    add_observer(o, nevh_state_error_observe, o->state, 1);
+    add_observer(o, invariants_observe, o->kept, 1);
+    add_observer(o, shadow_observe, o->shadow, 1);
+    add_observer(o, observe_error_bound, r->error_bound ? &o->bound : NULL,
+                 1 + floor(steps / LOOKS));
+    add_observer(o, observe_work, p->work_limit > 0 ? &o->work : NULL,
+                 p->n < 8 ? 8 : 1);
+}
+
+static void observers_new(row_observers *o, const plan *p, row *r,
+                          const nevh_stepper *s) {
+    *o = (row_observers){
+        .energy = row_energy(p, r, s),
+        .state = nevh_state_error_new(p->reference),
+        .kept = p->diagnostics ? invariants_new(p) : NULL,
+        .shadow = row_shadow(p, r),
+        .shown = {p, 0},
+        .work = {p, r->scheme, s, nevh_stepper_counts(s), false}};
+    o->trace = (energy_trace){r->errors, o->energy};
+    o->bound = (bound_watch){r->error_bound, o->energy, o->state, &o->shown};
+    if (o->state)
+        nevh_state_error_follow(o->state, s);
+    if (o->state && (p->observable || p->energies))
+        nevh_state_error_hand(o->state, compare_pair, &o->shown);
+    if (p->energies)
+        energies_begin(p->energies);
+    observe_all(o, p, r);
+}
+
+static void set_status(const plan *p, row *r, int status, const char *why,
+                       double t) {
+    char *ends = ends_text(p, p->ends);
     r->ran = !r->over_limit && (!status || r->energy.verdict == NEVH_UNSTABLE);
     r->failed = !r->ran;
     r->broken = status && r->ran;
-    char *ends = ends_text(w->plan, w->plan->ends);
-    r->status = status ? text_print("failed: %s (after t = %.9g)",
-                                    ends ? ends : why, nevh_stepper_time(s))
-                       : text_print("ok");
+    r->status =
+        status ? text_print("failed: %s (after t = %.9g)", ends ? ends : why, t)
+               : text_print("ok");
     free(ends);
-    r->state_error = state_error_of(w->plan, r, state);
-    if (state && isnan(r->state_error))
-        explain_unknown(w->plan, r, why);
-    r->observable_error = isnan(r->state_error) ? NAN : shown.worst;
-    if (w->plan->energies && r->ran && !isnan(r->state_error))
-        r->energies = energies_result(w->plan->energies);
-    r->changes = kept ? invariants_result(kept) : NULL;
-    if (!nevh_shadow_status(shadow))
-        r->shadow = nevh_shadow_result(shadow);
-    nevh_shadow_free(shadow);
-    nevh_state_error_free(state);
-    nevh_energy_free(energy);
+}
+
+/* Results of the observers, which go. */
+static void observers_result(row_observers *o, const plan *p, row *r,
+                             const char *why) {
+    r->state_error = state_error_of(p, r, o->state);
+    if (o->state && isnan(r->state_error))
+        explain_unknown(p, r, why);
+    r->observable_error = isnan(r->state_error) ? NAN : o->shown.worst;
+    if (p->energies && r->ran && !isnan(r->state_error))
+        r->energies = energies_result(p->energies);
+    r->changes = o->kept ? invariants_result(o->kept) : NULL;
+    if (!nevh_shadow_status(o->shadow))
+        r->shadow = nevh_shadow_result(o->shadow);
+    nevh_shadow_free(o->shadow);
+    nevh_state_error_free(o->state);
+    nevh_energy_free(o->energy);
+}
+
+static void run_observed(const plan *p, row *r, nevh_stepper *s) {
+    row_observers o;
+    observers_new(&o, p, r, s);
+    double begin = cpu_seconds();
+    int status = plan_run(p, s, r->step, o.all, o.count, &r->stopped);
+    r->observed_seconds = cpu_seconds() - begin;
+    r->t_end = status                 ? nevh_stepper_time(s)
+               : isfinite(r->stopped) ? r->stopped
+                                      : p->t_end;
+    const char *why = o.work.over_limit        ? "it takes too long"
+                      : status == NEVH_STOPPED ? nevh_energy_message(o.energy)
+                                               : nevh_stepper_message(s);
+    r->energy = nevh_energy_result(o.energy, 0);
+    r->passed = nevh_energy_passed(o.energy, &r->passed_effect);
+    r->steps = nevh_stepper_taken(s);
+    r->counts = row_counts(s, o.work.before);
+    r->over_limit = o.work.over_limit;
+    set_status(p, r, status, why, nevh_stepper_time(s));
+    observers_result(&o, p, r, why);
 }
 
 static bool is_refusal(int status) {
@@ -265,23 +263,11 @@ static bool refused(row *r, const nevh_stepper *s) {
     return true;
 }
 
-static row_job row_job_new(const plan *p, row *r) {
-    return (row_job){p, r, tool_allocate(p->n, sizeof(double)),
-                     tool_allocate(p->n, sizeof(double))};
-}
-
-static void row_job_free(row_job *w) {
-    free(w->q);
-    free(w->p);
-}
-
 /* Sets the distance at which a scheme with a tolerance ends steps for observers: so
    long that the tolerance, not dt, limits its steps. If H reads the time it stays
    dt, so that changes within dt are seen. */
-static void space_ends(row_job *w) {
+static void space_ends(const plan *p, row *r) {
     static const double limited = 0.5, longer = 4, fewest = 16;
-    row *r = w->row;
-    const plan *p = w->plan;
     double longest = (p->t_end - p->run->t_start) / fewest, stopped;
     int each = nevh_integrator_gradients(r->scheme);
     if (r->tolerance == 0 || each == 0 || p->time || p->screening ||
@@ -292,7 +278,7 @@ static void space_ends(row_job *w) {
         uint64_t before = nevh_stepper_counts(s).gradients;
         int status = nevh_stepper_status(s);
         if (!status)
-            status = run(w, s, NULL, 0, &stopped);
+            status = plan_run(p, s, r->step, NULL, 0, &stopped);
         double taken = (double)(nevh_stepper_counts(s).gradients - before);
         double mean = (nevh_stepper_time(s) - p->run->t_start) * each / taken;
         row_stepper_keep(p, r, false, s);
@@ -302,49 +288,42 @@ static void space_ends(row_job *w) {
 }
 
 void row_run(const plan *p, row *r) {
-    row_job w = row_job_new(p, r);
     r->step = r->dt;
-    space_ends(&w);
+    space_ends(p, r);
     r->observable = p->observable;
     r->observed_order = r->state_error = r->observable_error = r->stopped =
         r->seconds = NAN;
     nevh_stepper *s = row_stepper(p, r, p->balance);
     if (!refused(r, s)) {
         r->native = nevh_stepper_native(s, NULL);
-        run_observed(&w, s);
+        run_observed(p, r, s);
         if (!p->screening)
             row_follow(p, r);
         if (r->ran && p->diagnostics)
             diagnose_row(p, r);
         if (r->ran && r->energy.verdict == NEVH_UNSTABLE && !p->screening)
-            unstable_since(&w);
+            unstable_since(p, r);
         if (r->ran && r->tolerance > 0)
-            r->dt = mean_step(&w);
+            r->dt = mean_step(p, r);
     }
     r->work =
         nevh_counts_seconds(&r->counts, p->n, r->scheme, r->order, r->steps);
     row_stepper_keep(p, r, p->balance, s);
-    row_job_free(&w);
 }
 
 double row_end(const plan *p, const row *r) {
     double stopped = NAN;
-    row copy = *r;
-    row_job w = row_job_new(p, &copy);
     nevh_stepper *s = row_stepper(p, r, false);
-    if (nevh_stepper_status(s) || run(&w, s, NULL, 0, &stopped))
+    if (nevh_stepper_status(s) || plan_run(p, s, r->step, NULL, 0, &stopped))
         stopped = p->run->t_start;
     row_stepper_keep(p, r, false, s);
-    row_job_free(&w);
     return isnan(stopped) ? p->t_end : stopped;
 }
 
 void row_finish(const plan *p, row *r) {
-    row_job w = row_job_new(p, r);
     row_follow(p, r);
     if (r->energy.verdict == NEVH_UNSTABLE)
-        unstable_since(&w);
-    row_job_free(&w);
+        unstable_since(p, r);
 }
 
 int row_fails(const plan *p, const row *r) {

@@ -26,6 +26,16 @@ int pace_observe(void *data, size_t step, double t, const double q[],
     return NEVH_OK;
 }
 
+int energy_limit_observe(void *data, size_t step, double t, const double q[],
+                         const double p[]) {
+    energy_limit *e = data;
+    int status = nevh_energy_observe(e->energy, step, t, q, p);
+    e->t = t;
+    e->step = step;
+    e->passed = !(fabs(nevh_energy_error(e->energy, 0)) <= e->limit);
+    return status || !e->passed ? status : NEVH_STOPPED;
+}
+
 /* The turn of a step on an oscillator: the angle by which steps of h omega = x
    turn the phase. */
 static const char *resonance(const nevh_integrator *scheme, double x) {
@@ -74,19 +84,6 @@ char *stability_cause(const nevh_integrator *scheme, double limit, double dt,
     return text;
 }
 
-typedef struct {
-    nevh_energy *energy;
-    bool unstable;
-} explosion;
-
-static int stop_at_explosion(void *data, size_t step, double t,
-                             const double q[], const double p[]) {
-    explosion *e = data;
-    int status = nevh_energy_observe(e->energy, step, t, q, p);
-    e->unstable = fabs(nevh_energy_error(e->energy, 0)) > unstable_above;
-    return e->unstable ? (int)NEVH_STOPPED : status;
-}
-
 /* More often at the start, since a run may end soon. */
 typedef struct {
     pace *fastest;
@@ -111,7 +108,7 @@ pace stability_pace(const nevh_system *system, const nevh_integrator *scheme,
     nevh_options own = *o;
     own.gradient = NULL;
     own.gradient_step = 0;
-    explosion e = {.energy = nevh_energy_new(system, o)};
+    energy_limit e = {nevh_energy_new(system, o), .limit = unstable_above};
     pace fastest = {.rates = nevh_rates_new(system, &own)};
     start early = {&fastest, 1};
     size_t every = (size_t)fmin(1e9, fabs((t_end - o->t) / dt) / SAMPLES);
@@ -124,7 +121,7 @@ pace stability_pace(const nevh_system *system, const nevh_integrator *scheme,
     nevh_run_until(s, o->t, dt, t_end, q, p,
                    (nevh_observer[]){{pace_observe, &fastest, every},
                                      {observe_early, &early, 1},
-                                     {stop_at_explosion, &e, 1}},
+                                     {energy_limit_observe, &e, 1}},
                    3);
     nevh_rates_free(fastest.rates);
     nevh_energy_free(e.energy);

@@ -16,19 +16,30 @@ int stop_observe(void *data, size_t step, double t, const double q[],
     return s->reached ? (int)NEVH_STOPPED : status;
 }
 
-int plan_run(const plan *p, nevh_stepper *stepper, double dt, double q[],
-             double m[], const nevh_observer observers[], size_t count,
-             double *stopped) {
+int plan_run_from(const plan *p, nevh_stepper *stepper, double q[], double m[],
+                  const nevh_observer observers[], size_t count,
+                  double *stopped) {
     nevh_observer *all = tool_allocate(count + 1, sizeof *all);
     stop s = {.scene = p->scene};
     if (count)
         memcpy(all, observers, count * sizeof *all);
     all[count] = (nevh_observer){stop_observe, &s, 1};
-    int status = nevh_run_until(stepper, p->run->t_start, dt, p->t_end, q, m,
-                                all, count + nevh_scene_stops(p->scene));
+    int status = nevh_run_until(stepper, p->run->t_start, p->dt[0], p->t_end, q,
+                                m, all, count + nevh_scene_stops(p->scene));
     free(all);
     *stopped = s.reached ? s.t : NAN;
     return s.reached ? NEVH_OK : status;
+}
+
+int plan_run(const plan *p, nevh_stepper *stepper, double dt,
+             const nevh_observer observers[], size_t count, double *stopped) {
+    plan by = *p;
+    double *state = plan_state(p);
+    by.dt = &dt;
+    int status = plan_run_from(&by, stepper, state, state + p->n, observers,
+                               count, stopped);
+    free(state);
+    return status;
 }
 
 char *stop_words(const plan *p, double t) {

@@ -187,18 +187,15 @@ char *plan_doubts(const plan *p, const nevh_energy *watch, int status) {
 char *plan_doubts_again(const plan *p, const char *integrator, double dt) {
     nevh_stepper *s = plan_stepper(p, integrator);
     nevh_energy *watch = plan_watch(p);
-    double stopped, *q = tool_allocate(2 * p->n, sizeof *q);
+    double stopped;
     int status = nevh_stepper_status(s);
-    memcpy(q, p->q, p->n * sizeof *q);
-    memcpy(q + p->n, p->p, p->n * sizeof *q);
     if (!status)
-        status = plan_run(p, s, dt, q, q + p->n,
-                          &(nevh_observer){nevh_energy_observe, watch, 1}, 1,
-                          &stopped);
+        status =
+            plan_run(p, s, dt, &(nevh_observer){nevh_energy_observe, watch, 1},
+                     1, &stopped);
     char *text = plan_doubts(p, watch, status);
     nevh_stepper_free(s);
     nevh_energy_free(watch);
-    free(q);
     return text;
 }
 

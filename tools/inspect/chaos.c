@@ -235,9 +235,7 @@ static void note_energy(chaos_job *j, const row *r) {
     nevh_options o = plan_options(p, p->gradients.item[0]);
     nevh_stepper *s = plan_stepper(p, r->integrator);
     nevh_energy *energy = tool_owned(nevh_energy_new(p->system, &o));
-    double *q = tool_allocate(2 * p->n, sizeof *q);
-    memcpy(q, p->q, p->n * sizeof *q);
-    memcpy(q + p->n, p->p, p->n * sizeof *q);
+    double *q = plan_state(p);
     plan_set_scale(p, energy);
     nevh_run_until(s, p->run->t_start, r->dt, nevh_chaos_result(r->chaos).t, q,
                    q + p->n, &(nevh_observer){nevh_energy_observe, energy, 1},

@@ -132,7 +132,7 @@ static int run(const plan *p, price prices[], size_t count, list *notes) {
     if (!s)
         return TOOL_USAGE;
     uint64_t before = nevh_stepper_counts(s).gradients;
-    int status = plan_run(p, s, p->dt[0], p->q, p->p, NULL, 0, &stopped);
+    int status = plan_run(p, s, p->dt[0], NULL, 0, &stopped);
     double gradients = (double)(nevh_stepper_counts(s).gradients - before);
     for (size_t i = 0; i < count; i++) {
         prices[i].values = (double)nevh_field_effect_values(

@@ -55,13 +55,7 @@ void trace_free(trace *o) {
 
 static int go(trace *o, nevh_stepper *s, const nevh_observer *observer) {
     const plan *p = o->plan;
-    double *state = tool_allocate(2 * p->n, sizeof *state);
-    memcpy(state, p->q, p->n * sizeof *state);
-    memcpy(state + p->n, p->p, p->n * sizeof *state);
-    int status = plan_run(p, s, p->dt[0], state, state + p->n, observer,
-                          observer ? 1 : 0, &o->stopped);
-    free(state);
-    return status;
+    return plan_run(p, s, p->dt[0], observer, observer ? 1 : 0, &o->stopped);
 }
 
 /* The shortest of a few runs that nobody watches. */

@@ -363,9 +363,7 @@ static int measure(const plan *p, extent *e) {
     nevh_stepper *s = plan_symplectic(p);
     if (!s)
         return TOOL_USAGE;
-    double *q = tool_allocate(2 * p->n, sizeof *q), *m = q + p->n;
-    memcpy(q, p->q, p->n * sizeof *q);
-    memcpy(m, p->p, p->n * sizeof *q);
+    double *q = plan_state(p), *m = q + p->n;
     nevh_observer observer = {widen, e, 1};
     int status =
         nevh_run(s, p->run->t_start, p->dt[0], 1000, q, m, &observer, 1);

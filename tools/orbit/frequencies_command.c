@@ -119,20 +119,17 @@ static int take(void *data, size_t step, double t, const double q[],
 static int sample(frequencies_job *j, nevh_stepper *s, double dt,
                   nevh_energy *watch, char **why) {
     const plan *p = &j->plan;
-    double *q = tool_allocate(2 * p->n, sizeof *q), *m = q + p->n, stopped;
+    double stopped;
     nevh_observer observers[] = {{take, j, 1}, {nevh_energy_observe, watch, 1}};
     j->failed = 0;
     j->finer = (size_t)lround(p->dt[0] / dt);
     for (size_t i = 0; i < j->count; i++)
         nevh_spectral_samples_restart(j->all[i].samples);
-    memcpy(q, p->q, p->n * sizeof *q);
-    memcpy(m, p->p, p->n * sizeof *q);
-    int status = plan_run(p, s, dt, q, m, observers, watch ? 2 : 1, &stopped);
+    int status = plan_run(p, s, dt, observers, watch ? 2 : 1, &stopped);
     *why = status  ? plan_why(p, j->failed ? nevh_scene_message(p->scene)
                                            : nevh_stepper_message(s))
             : watch ? plan_doubts(p, watch, status)
                    : NULL;
-    free(q);
     return *why && !status ? NEVH_EFAILED : status;
 }
 

@@ -72,7 +72,7 @@ static void run_orbits(portrait_job *j, orbits_of *o) {
         double q = j->members.q[o->at], m = j->members.p[o->at], stopped;
         nevh_observer observer = {take, o, o->every};
         nevh_stepper_reset(s);
-        if (plan_run(p, s, p->dt[0], &q, &m, &observer, 1, &stopped) &&
+        if (plan_run_from(p, s, &q, &m, &observer, 1, &stopped) &&
             !o->failed++) {
             char *why = why_of(j, o, nevh_stepper_message(s));
             o->status = text_print("failed: %s", why);

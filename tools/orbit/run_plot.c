@@ -226,12 +226,6 @@ static nevh_energy *new_energy(const plan *p, const nevh_stepper *s) {
     return energy;
 }
 
-static double *copy(const double from[], size_t count) {
-    double *to = tool_allocate(count, sizeof *to);
-    memcpy(to, from, count * sizeof *to);
-    return to;
-}
-
 static void draw_energy(plot *to, const run_picture *picture, const orbit *o) {
     const plan *p = &o->plan;
     nevh_stepper *s = new_stepper(p, o->integrator);
@@ -239,9 +233,8 @@ static void draw_energy(plot *to, const run_picture *picture, const orbit *o) {
     energy_trace trace = {envelope_new(p->run->t_start, p->t_end), energy};
     nevh_observer observers[] = {{nevh_energy_observe, energy, 1},
                                  {energy_trace_observe, &trace, 1}};
-    double *q = copy(p->q, p->n), *m = copy(p->p, p->n), stopped;
-    if (plan_run(p, s, p->dt[0], q, m, observers, 2, &stopped) &&
-        !picture->quiet)
+    double stopped;
+    if (plan_run(p, s, p->dt[0], observers, 2, &stopped) && !picture->quiet)
         tool_refuse("%s: %s failed: %s", p->name, o->integrator,
                     nevh_stepper_message(s));
     energy_plot_add(to, picture->orbits.count > 1 ? o->name : NULL,
@@ -249,8 +242,6 @@ static void draw_energy(plot *to, const run_picture *picture, const orbit *o) {
     nevh_energy_free(energy);
     nevh_stepper_free(s);
     free(trace.envelope);
-    free(q);
-    free(m);
 }
 
 plot *plot_energy(run_picture *picture) {

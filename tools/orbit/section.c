@@ -221,8 +221,8 @@ static int run_member(section_job *j, nevh_stepper *s) {
     nevh_stepper_reset(s);
     j->stopped = NAN;
     if (!status)
-        status = plan_run(p, s, p->dt[0], q, m, observers,
-                          j->members.several ? 1 : 2, &j->stopped);
+        status = plan_run_from(p, s, q, m, observers,
+                               j->members.several ? 1 : 2, &j->stopped);
     status = explain(j, status, s, x, energy);
     nevh_sections_free(x);
     nevh_energy_free(energy);

@@ -67,9 +67,7 @@ static void recording_free(recording *r) {
 
 static void run(const animation *f, nevh_stepper *s, recorder *c) {
     const plan *p = f->plan;
-    double *q = tool_allocate(2 * p->n, sizeof *q), start = p->run->t_start;
-    memcpy(q, p->q, p->n * sizeof *q);
-    memcpy(q + p->n, p->p, p->n * sizeof *q);
+    double *q = plan_state(p), start = p->run->t_start;
     nevh_observer observers[] = {{nevh_energy_observe, c->energy, 1},
                                  {record_state, c, 1}};
     nevh_run_until(s, start, f->dt, start + (double)f->most * f->dt, q,

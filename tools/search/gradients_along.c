@@ -63,16 +63,12 @@ static int follow(const gradients_job *c, const char *gradient, double step,
     o.steps_foreseen = RUNS * (double)c->steps;
     nevh_stepper *s = nevh_stepper_new(c->plan->system, scheme_of(c), &o);
     plan_native_report(s);
-    size_t n = c->plan->n;
-    double *q = tool_allocate(n, sizeof *q), *p = tool_allocate(n, sizeof *p);
-    memcpy(q, c->plan->q, n * sizeof *q);
-    memcpy(p, c->plan->p, n * sizeof *p);
+    double *q = plan_state(c->plan), *p = q + c->plan->n;
     int status = nevh_stepper_status(s);
     if (!status)
         status = nevh_run(s, c->plan->run->t_start, c->dt, c->steps, q, p,
                           observer, 1);
     free(q);
-    free(p);
     nevh_stepper_free(s);
     return status;
 }
@@ -312,9 +308,7 @@ static double step_work(const gradients_job *c) {
     nevh_options o = gradient_options(c, "central4", 0);
     nevh_stepper *s = nevh_stepper_new(c->plan->system, scheme_of(c), &o);
     size_t n = c->plan->n;
-    double *state = tool_allocate(2 * n, sizeof *state);
-    memcpy(state, c->plan->q, n * sizeof *state);
-    memcpy(state + n, c->plan->p, n * sizeof *state);
+    double *state = plan_state(c->plan);
     nevh_counts before = nevh_stepper_counts(s);
     int status = nevh_run(s, c->plan->run->t_start, c->dt, PILOT, state,
                           state + n, NULL, 0);

@@ -21,52 +21,36 @@ typedef struct {
 typedef struct {
     const plan *plan;
     const row *row;
-    double work, *q, *p;
+    double work;
 } step_search;
-
-typedef struct {
-    nevh_energy *energy;
-    double t;
-    size_t steps;
-    bool kept;
-} attempt;
-
-static int watch(void *data, size_t step, double t, const double q[],
-                 const double p[]) {
-    attempt *a = data;
-    int status = nevh_energy_observe(a->energy, step, t, q, p);
-    a->t = t;
-    a->steps = step;
-    a->kept = fabs(nevh_energy_error(a->energy, 0)) <= target;
-    return status || a->kept ? status : NEVH_STOPPED;
-}
 
 /* A run with that dt, for as long as the error keeps the target at each of so
    many steps. */
-static attempt run(step_search *s, double dt, size_t every) {
+static energy_limit run(step_search *s, double dt, size_t every) {
     const plan *p = s->plan;
     row r = *s->row;
     double stopped;
     nevh_stepper *stepper = row_stepper(p, &r, p->balance);
-    attempt a = {.energy = row_energy(p, &r, stepper), .t = p->run->t_start};
+    energy_limit e = {.energy = row_energy(p, &r, stepper),
+                      .limit = target,
+                      .t = p->run->t_start};
     nevh_counts before = nevh_stepper_counts(stepper);
-    memcpy(s->q, p->q, p->n * sizeof *s->q);
-    memcpy(s->p, p->p, p->n * sizeof *s->p);
-    int status = plan_run(p, stepper, dt, s->q, s->p,
-                          &(nevh_observer){watch, &a, every}, 1, &stopped);
+    int status = plan_run(p, stepper, dt,
+                          &(nevh_observer){energy_limit_observe, &e, every}, 1,
+                          &stopped);
     nevh_counts c = row_counts(stepper, before);
     s->work += nevh_counts_seconds(&c, p->n, r.scheme,
-                                   nevh_stepper_order(stepper), a.steps);
-    a.kept = a.kept && !status;
-    nevh_energy_free(a.energy);
+                                   nevh_stepper_order(stepper), e.step);
+    e.passed = e.passed || status;
+    nevh_energy_free(e.energy);
     row_stepper_keep(p, &r, p->balance, stepper);
-    return a;
+    return e;
 }
 
 /* Most runs fail, for which a look from time to time is enough. */
-static attempt try_step(step_search *s, double dt) {
-    attempt a = run(s, dt, 8);
-    return a.kept ? run(s, dt, 1) : a;
+static energy_limit try_step(step_search *s, double dt) {
+    energy_limit e = run(s, dt, 8);
+    return e.passed ? e : run(s, dt, 1);
 }
 
 /* The number that so many digits say, which is the one that is run. */
@@ -84,10 +68,7 @@ static double refine(step_search *s, double kept, double lost) {
         double dt = rounded_down(sqrt(kept * lost), 2);
         if (dt <= kept)
             break;
-        if (try_step(s, dt).kept)
-            kept = dt;
-        else
-            lost = dt;
+        *(try_step(s, dt).passed ? &lost : &kept) = dt;
     }
     return kept;
 }
@@ -117,11 +98,11 @@ static suggested_step look(step_search *s) {
     double before = s->row->dt, kept_before = NAN, steps_before = NAN;
     for (int i = 0; i < HALVINGS; i++) {
         double dt = rounded_down(before / 2, 2);
-        attempt a = try_step(s, dt);
-        double keeps = a.t - start;
-        if (a.kept)
+        energy_limit e = try_step(s, dt);
+        double keeps = e.t - start;
+        if (!e.passed)
             return (suggested_step){refine(s, dt, before), false};
-        double steps = (double)a.steps, guessed = 0;
+        double steps = (double)e.step, guessed = 0;
         bool last = s->work > most_work || steps > most_steps;
         if (last || (steps > enough_steps &&
                      next_steps(s, dt / 2, steps, steps_before) > most_steps))
@@ -136,14 +117,8 @@ static suggested_step look(step_search *s) {
 }
 
 static suggested_step find(const plan *p, const row *r) {
-    step_search s = {.plan = p,
-                     .row = r,
-                     .q = tool_allocate(p->n, sizeof(double)),
-                     .p = tool_allocate(p->n, sizeof(double))};
-    suggested_step found = look(&s);
-    free(s.q);
-    free(s.p);
-    return found;
+    step_search s = {.plan = p, .row = r};
+    return look(&s);
 }
 
 static bool needs_shorter_step(const row *r) {
