@@ -35,6 +35,8 @@ typedef struct {
     double work_limit; /* work that a row may take; 0: any */
     double follow;     /* work that its verdict may take; 0: as usual */
     bool match_work, diagnostics;
+    bool
+        by_state; /* errors that a search counts are of states, or observables */
     nevh_timing *timing;       /* NULL: H reads no time */
     nevh_timing *jumps;        /* of a longer time; NULL: there are none */
     nevh_reference *reference; /* NULL: not asked for, or there is none */

@@ -290,6 +290,7 @@ static void space_ends(const plan *p, row *r) {
 void row_run(const plan *p, row *r) {
     r->step = r->dt;
     space_ends(p, r);
+    r->by_state = p->by_state;
     r->observable = p->observable;
     r->observed_order = r->state_error = r->observable_error = r->stopped =
         r->seconds = NAN;

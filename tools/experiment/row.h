@@ -24,8 +24,8 @@ typedef struct {
     int order, failed;    /* failed: of the exit status */
     size_t steps;
     char *status;
-    bool observable;      /* its error is that of one, not of states */
-    bool native;          /* the steps whose time was taken are compiled */
+    bool by_state, observable; /* its error that counts is of those */
+    bool native;               /* the steps whose time was taken are compiled */
     bool ran, over_limit; /* there are numbers; its work passed work_limit */
     bool broken;          /* ran, as an unstable one, until it failed */
     nevh_energy_report energy;

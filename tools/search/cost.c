@@ -30,11 +30,11 @@ static void descend_all(costs *c) {
             c->study[i].end = STUDY_LIMIT;
 }
 
-static double least_work(const costs *c, double target) {
+static double least_work(const costs *c, size_t target) {
     double least = INFINITY;
     for (size_t i = 0; i < c->count; i++) {
         const study *l = &c->study[i];
-        const row *r = study_cheapest(l, target, c->search.by_state);
+        const row *r = cost_cell(l, target);
         if (costs_count(c, l) && r)
             least = fmin(least, r->work);
     }
@@ -43,12 +43,11 @@ static double least_work(const costs *c, double target) {
 
 /* True if the coarsest step that keeps the target may be a cheap one: it costs more
    than the last level that does not. */
-static bool is_promising(const costs *c, const study *l, double target) {
+static bool is_promising(const costs *c, const study *l, size_t target) {
     static const double nearly = 2;
     double least = least_work(c, target);
     size_t i = 0;
-    while (i < l->count &&
-           study_error(&l->level[i], c->search.by_state) > target)
+    while (i < l->count && study_error(&l->level[i]) > cost_target[target])
         i++;
     return i == 0 || l->level[i - 1].work < nearly * least;
 }
@@ -57,8 +56,7 @@ static void refine_all(costs *c) {
     for (size_t k = 0; k < COST_TARGETS; k++)
         for (size_t i = 0; i < c->count; i++) {
             study *l = &c->study[i];
-            if (c->all || cost_is_yardstick(l) ||
-                is_promising(c, l, cost_target[k]))
+            if (c->all || cost_is_yardstick(l) || is_promising(c, l, k))
                 study_refine(&c->search, l, cost_target[k], GRID_COARSE);
         }
 }
@@ -67,11 +65,10 @@ static void refine_all(costs *c) {
 static void refine_cheapest(costs *c) {
     static const double nearly = 1.5;
     for (size_t k = 0; k < COST_TARGETS; k++) {
-        double least = least_work(c, cost_target[k]);
+        double least = least_work(c, k);
         for (size_t i = 0; i < c->count; i++) {
             study *l = &c->study[i];
-            const row *r =
-                study_cheapest(l, cost_target[k], c->search.by_state);
+            const row *r = cost_cell(l, k);
             if (costs_count(c, l) && r && r->work <= nearly * least &&
                 !cost_is_beyond(c, k))
                 study_refine(&c->search, l, cost_target[k], 1);
@@ -80,19 +77,19 @@ static void refine_cheapest(costs *c) {
 }
 
 /* True if its time may be the least. */
-static bool may_win(const costs *c, const row *r, double target) {
+static bool may_win(const costs *c, const row *r, size_t target) {
     static const double nearly = 2.5;
     return r->work < nearly * least_work(c, target);
 }
 
 static bool is_compared(const costs *c, const study *l, const row *r,
-                        double target) {
+                        size_t target) {
     return r && (c->all || cost_is_yardstick(l) ||
                  (costs_count(c, l) && may_win(c, r, target)));
 }
 
 static bool is_shown(const costs *c, const study *l, const row *r,
-                     double target) {
+                     size_t target) {
     (void)target;
     return r && cost_shows(c, l);
 }
@@ -106,15 +103,14 @@ typedef struct {
 /* The cells that are `wanted`, target by target; returns their number. */
 static size_t find_cells(costs *c,
                          bool (*wanted)(const costs *, const study *,
-                                        const row *, double target),
+                                        const row *, size_t target),
                          cell cells[]) {
     size_t count = 0;
     for (size_t k = 0; k < COST_TARGETS; k++)
         for (size_t i = 0; i < c->count; i++) {
             study *l = &c->study[i];
-            const row *r =
-                study_cheapest(l, cost_target[k], c->search.by_state);
-            if (wanted(c, l, r, cost_target[k]))
+            const row *r = cost_cell(l, k);
+            if (wanted(c, l, r, k))
                 cells[count++] = (cell){l, (size_t)(r - l->level)};
         }
     return count;
@@ -182,16 +178,21 @@ static void make_studies(costs *c) {
 }
 
 bool costs_count(const costs *c, const study *l) {
-    return !l->count || c->search.by_state || !study_keeps_energy(l);
+    return !l->count || c->search.plan.by_state || !study_keeps_energy(l);
 }
 
-const study *costs_cheapest(const costs *c, double target) {
+const row *cost_cell(const study *l, size_t target) {
+    return study_cheapest(l, cost_target[target]);
+}
+
+const study *costs_cheapest(const costs *c, size_t target, bool gradients) {
     const study *best = NULL;
     double least = INFINITY;
     for (size_t i = 0; i < c->count; i++) {
         const study *l = &c->study[i];
-        const row *r = study_cheapest(l, target, c->search.by_state);
-        if (costs_count(c, l) && r && r->seconds < least)
+        const row *r = cost_cell(l, target);
+        if (costs_count(c, l) && r && r->seconds < least &&
+            (!gradients || study_takes_gradients(l)))
             least = r->seconds, best = l;
     }
     return best;

@@ -26,24 +26,24 @@ typedef struct {
     size_t left_out; /* levels */
 } drawing;
 
-static double error_of(const drawing *d, const study *l, size_t k) {
-    return study_error(&l->level[k], d->costs->search.by_state);
+static double error_of(const study *l, size_t k) {
+    return study_error(&l->level[k]);
 }
 
 /* True if a shorter step costs no more and errs less: steps may be so long that
    solving their equations takes more work than they save. */
-static bool is_outdone(const drawing *d, const study *l, size_t k) {
+static bool is_outdone(const study *l, size_t k) {
     for (size_t i = k + 1; i < l->count; i++)
         if (l->level[i].work <= l->level[k].work &&
-            error_of(d, l, i) <= error_of(d, l, k))
+            error_of(l, i) <= error_of(l, k))
             return true;
     return false;
 }
 
 /* Without a break where there was no time to measure it. */
 static bool is_drawn(const drawing *d, const study *l, size_t k) {
-    return isfinite(error_of(d, l, k)) && d->work(&l->level[k]) > 0 &&
-           !is_outdone(d, l, k);
+    return isfinite(error_of(l, k)) && d->work(&l->level[k]) > 0 &&
+           !is_outdone(l, k);
 }
 
 static void draw_study(drawing *d, const study *l) {
@@ -55,9 +55,9 @@ static void draw_study(drawing *d, const study *l) {
     plot_style(d->to, series, PLOT_BOTH);
     for (size_t k = 0; k < l->count; k++)
         if (is_drawn(d, l, k))
-            plot_point(d->to, series, d->work(&l->level[k]), error_of(d, l, k));
+            plot_point(d->to, series, d->work(&l->level[k]), error_of(l, k));
         else
-            d->left_out += isfinite(error_of(d, l, k)) && is_outdone(d, l, k);
+            d->left_out += isfinite(error_of(l, k)) && is_outdone(l, k);
     free(name);
 }
 
@@ -67,7 +67,7 @@ static void draw_guide(const drawing *d, const study *l) {
     static const double aside = 1.5, decades = 1.5;
     size_t drawn[2] = {0, 0}, count = 0;
     for (size_t k = 0; k < l->count; k++)
-        if (is_drawn(d, l, k) && error_of(d, l, k) < 1) {
+        if (is_drawn(d, l, k) && error_of(l, k) < 1) {
             drawn[0] = count++ ? drawn[0] : k;
             drawn[1] = k;
         }
@@ -76,7 +76,7 @@ static void draw_guide(const drawing *d, const study *l) {
     size_t middle = (drawn[0] + drawn[1]) / 2;
     double order = nevh_integrator_order(l->scheme);
     double work = aside * d->work(&l->level[middle]);
-    double error = error_of(d, l, middle);
+    double error = error_of(l, middle);
     char *name = text_print("order %g", order);
     size_t series = plot_series(d->to, name);
     plot_style(d->to, series, PLOT_GUIDE);
@@ -125,7 +125,7 @@ static bool all_have(const costs *c, work_of *count) {
 static void add_note(const drawing *d) {
     char *text = text_print(
         "%s%s",
-        d->costs->search.by_state
+        d->costs->search.plan.by_state
             ? "errors relative to the range of each variable"
             : "errors relative to the scale of the energy",
         d->left_out ? "; long steps that cost no less than shorter ones are "
@@ -137,8 +137,9 @@ static void add_note(const drawing *d) {
 
 int cost_plot(const options *o, const costs *c) {
     const plan *p = &c->search.plan;
-    const char *error = c->search.by_state ? "largest state error, relative"
-                                           : "largest energy error, relative";
+    const char *error = c->search.plan.by_state
+                            ? "largest state error, relative"
+                            : "largest energy error, relative";
     bool h = all_have(c, values);
     drawing d = {c, plot_new(p->title, "CPU time (ms)", error), NULL, 0};
     d.work = milliseconds;

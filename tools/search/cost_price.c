@@ -5,36 +5,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The cheapest of those that take gradients. */
-static const study *cheapest(const costs *c, double target) {
-    const study *best = NULL;
-    double least = INFINITY;
-    for (size_t i = 0; i < c->count; i++) {
-        const study *l = &c->study[i];
-        const row *r = study_cheapest(l, target, c->search.by_state);
-        if (costs_count(c, l) && r && r->seconds < least &&
-            study_takes_gradients(l))
-            least = r->seconds, best = l;
-    }
-    return best;
-}
-
 /* The cheapest row with the most digits that are reached. */
 static const row *most_digits(const costs *c, const study **l) {
     for (size_t k = COST_TARGETS; k-- > 0;) {
-        *l = cheapest(c, cost_target[k]);
+        *l = costs_cheapest(c, k, true);
         if (*l && !cost_is_beyond(c, k))
-            return study_cheapest(*l, cost_target[k], c->search.by_state);
+            return cost_cell(*l, k);
     }
     return NULL;
 }
 
-static char *price(const costs *c, const row *best, const row *r) {
+static char *price(const row *best, const row *r) {
     double factor = r->seconds / best->seconds;
-    double error = study_error(r, c->search.by_state);
+    double error = study_error(r);
     if (!r->ran)
         return NULL;
-    if (error > 3 * study_error(best, c->search.by_state))
+    if (error > 3 * study_error(best))
         return text_print("%s x%.2g, but its error is %.1g", r->gradient,
                           factor, error);
     return text_print("%s x%.2g", r->gradient, factor);
@@ -57,7 +43,7 @@ void cost_price(costs *c, list *words) {
             gradient_fits(&c->search.plan, name, NULL)) {
             study_run(&c->search, &other, k);
             study_time(&c->search, &other, 0);
-            char *more = price(c, best, &other.level[0]);
+            char *more = price(best, &other.level[0]);
             if (more)
                 text_extend(&text, ", %s", more);
             others += more != NULL;
@@ -68,7 +54,6 @@ void cost_price(costs *c, list *words) {
     if (others)
         list_print(words,
                    "price of the gradient (%s at dt = %.4g, error %.1g): %s",
-                   l->integrator, best->dt,
-                   study_error(best, c->search.by_state), text);
+                   l->integrator, best->dt, study_error(best), text);
     free(text);
 }

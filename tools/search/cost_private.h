@@ -17,8 +17,11 @@ typedef struct {
 } costs;
 /* True if its errors are comparable with those of other studies. */
 bool costs_count(const costs *, const study *);
-/* NULL: none keeps the target. */
-const study *costs_cheapest(const costs *, double target);
+/* The cheapest level of a study for a target; NULL: none keeps it. */
+const row *cost_cell(const study *, size_t target);
+/* The study that takes least time; NULL: none keeps the target.
+   gradients  of those that take gradients */
+const study *costs_cheapest(const costs *, size_t target, bool gradients);
 bool cost_is_yardstick(const study *);
 bool cost_shows(const costs *, const study *);
 

@@ -17,12 +17,9 @@ bool cost_is_yardstick(const study *l) {
 static bool is_cheap(const costs *c, const study *l) {
     static const double nearly = 1.1;
     for (size_t k = 0; k < COST_TARGETS; k++) {
-        const study *best = costs_cheapest(c, cost_target[k]);
-        const row *r = study_cheapest(l, cost_target[k], c->search.by_state);
-        if (best && r &&
-            r->seconds <= nearly * study_cheapest(best, cost_target[k],
-                                                  c->search.by_state)
-                                       ->seconds)
+        const study *best = costs_cheapest(c, k, false);
+        const row *r = cost_cell(l, k);
+        if (best && r && r->seconds <= nearly * cost_cell(best, k)->seconds)
             return true;
     }
     return false;
@@ -53,7 +50,7 @@ bool cost_drifts(const study *l) {
 }
 
 bool cost_is_beyond(const costs *c, size_t target) {
-    return c->search.by_state &&
+    return c->search.plan.by_state &&
            cost_target[target] <
                (c->search.plan.observable
                     ? c->search.plan.observable_error
@@ -76,7 +73,7 @@ const char *cost_word(const costs *c, const study *l, size_t target) {
         return "fails";
     if (!costs_count(c, l))
         return "-";
-    if (study_cheapest(l, cost_target[target], c->search.by_state))
+    if (cost_cell(l, target))
         return NULL;
     return l->end == STUDY_LIMIT   ? "> limit"
            : l->end == STUDY_GIVEN ? "-"
@@ -93,21 +90,17 @@ bool cost_is_empty(const costs *c, size_t target) {
 }
 
 bool cost_repeats(const costs *c, const study *l, size_t target) {
-    bool by_state = c->search.by_state;
     return target && !cost_word(c, l, target - 1) && !cost_word(c, l, target) &&
-           study_cheapest(l, cost_target[target], by_state) ==
-               study_cheapest(l, cost_target[target - 1], by_state);
+           cost_cell(l, target) == cost_cell(l, target - 1);
 }
 
 static void show_cell(const costs *c, const study *l, size_t target, table *t) {
     const char *word = cost_word(c, l, target);
-    bool star = costs_cheapest(c, cost_target[target]) == l;
+    bool star = costs_cheapest(c, target, false) == l;
     char *text = word ? text_print("  %s", word)
                  : cost_repeats(c, l, target)
                      ? text_print("%s =", star ? "*" : " ")
-                     : cell_text(study_cheapest(l, cost_target[target],
-                                                c->search.by_state),
-                                 star);
+                     : cell_text(cost_cell(l, target), star);
     table_text(t, text);
     free(text);
 }

@@ -25,16 +25,15 @@ typedef struct {
 } slope;
 
 /* True if another level is more exact and takes no longer. */
-static bool is_dominated(const study *l, size_t i, bool by_state) {
+static bool is_dominated(const study *l, size_t i) {
     for (size_t k = 0; k < l->count; k++)
         if (k != i && l->level[k].seconds <= l->level[i].seconds &&
-            study_error(&l->level[k], by_state) <
-                study_error(&l->level[i], by_state))
+            study_error(&l->level[k]) < study_error(&l->level[i]))
             return true;
     return false;
 }
 
-static slope slope_new(const study *l, bool by_state) {
+static slope slope_new(const study *l) {
     static const double coarse = 2e-2, floors = 30;
     slope s = {tool_allocate(l->count, sizeof(double)),
                tool_allocate(l->count, sizeof(double)),
@@ -42,13 +41,13 @@ static slope slope_new(const study *l, bool by_state) {
                tool_allocate(l->count, sizeof(double)), 0};
     double least = INFINITY;
     for (size_t i = 0; i < l->count; i++)
-        least = fmin(least, study_error(&l->level[i], by_state));
+        least = fmin(least, study_error(&l->level[i]));
     least = l->end == STUDY_FLOOR ? fmax(floors * least, 1e-13) : least;
     for (size_t i = 0; i < l->count; i++) {
         const row *r = &l->level[i];
-        double error = study_error(r, by_state);
+        double error = study_error(r);
         if (error > coarse || error < least || !(r->seconds > 0) ||
-            is_dominated(l, i, by_state))
+            is_dominated(l, i))
             continue;
         s.error[s.count] = error;
         s.seconds[s.count] = r->seconds;
@@ -76,8 +75,8 @@ static const char *remark(const study *l, double time, double theory) {
     return "";
 }
 
-static void digit_words(const costs *c, const study *l, list *words) {
-    slope s = slope_new(l, c->search.by_state);
+static void digit_words(const study *l, list *words) {
+    slope s = slope_new(l);
     double time = grid_digit_factor(s.error, s.seconds, s.count);
     double evaluations = grid_digit_factor(s.error, s.evaluations, s.count);
     double steps = grid_digit_factor(s.error, s.frequency, s.count);
@@ -94,7 +93,7 @@ static void digits_words(const costs *c, list *words) {
     list lines = {0};
     for (size_t i = 0; i < c->count; i++)
         if (cost_shows(c, &c->study[i]) && c->study[i].count)
-            digit_words(c, &c->study[i], &lines);
+            digit_words(&c->study[i], &lines);
     if (lines.count)
         list_add(words, " one more digit         time     evaluations    "
                         "steps    10^(1/order)");
@@ -103,15 +102,11 @@ static void digits_words(const costs *c, list *words) {
     list_free(&lines);
 }
 
-static const row *cell(const costs *c, const study *l, size_t target) {
-    return study_cheapest(l, cost_target[target], c->search.by_state);
-}
-
 /* The last of the targets from `first` on that have the same cheapest. */
 static size_t last_alike(const costs *c, size_t first) {
-    const study *best = costs_cheapest(c, cost_target[first]);
+    const study *best = costs_cheapest(c, first, false);
     while (first + 1 < COST_TARGETS && !cost_is_beyond(c, first + 1) &&
-           costs_cheapest(c, cost_target[first + 1]) == best)
+           costs_cheapest(c, first + 1, false) == best)
         first++;
     return first;
 }
@@ -123,8 +118,8 @@ static char *step_text(const row *r) {
 }
 
 static void best_words(const costs *c, size_t first, size_t last, list *words) {
-    const study *best = costs_cheapest(c, cost_target[first]);
-    const row *a = cell(c, best, first), *b = cell(c, best, last);
+    const study *best = costs_cheapest(c, first, false);
+    const row *a = cost_cell(best, first), *b = cost_cell(best, last);
     char *digits =
         text_print(first < last ? "%.0f to %.0f" : "%.0f",
                    -log10(cost_target[first]), -log10(cost_target[last]));
@@ -151,11 +146,12 @@ static void yardstick_words(const costs *c, const char *name, list *words) {
     for (size_t k = COST_TARGETS; k-- > 0;)
         for (size_t i = 0; i < c->count && !cost_is_beyond(c, k); i++) {
             const study *l = &c->study[i];
-            const study *best = costs_cheapest(c, cost_target[k]);
+            const study *best = costs_cheapest(c, k, false);
             if (strcmp(l->integrator, name) != 0 || !best || best == l ||
-                !cell(c, l, k))
+                !cost_cell(l, k))
                 continue;
-            double factor = cell(c, l, k)->seconds / cell(c, best, k)->seconds;
+            double factor =
+                cost_cell(l, k)->seconds / cost_cell(best, k)->seconds;
             list_print(words,
                        factor < 9.5 ? "%.0f digits by %s take %.1f times as "
                                       "long."
@@ -169,7 +165,7 @@ static void yardstick_words(const costs *c, const char *name, list *words) {
 static void winner_words(const costs *c, list *words) {
     for (size_t k = 0; k < COST_TARGETS && !cost_is_beyond(c, k); k++) {
         size_t last = last_alike(c, k);
-        if (costs_cheapest(c, cost_target[k]))
+        if (costs_cheapest(c, k, false))
             best_words(c, k, last, words);
         else
             list_print(words, "No integrator reaches %.0f digits.",
@@ -360,7 +356,7 @@ void cost_words(costs *c, list *words) {
         "the energy is conserved exactly at any step, so that this table has "
         "no ranking; use --by state.",
         conserves_energy);
-    if (c->search.plan.friction && !c->search.by_state)
+    if (c->search.plan.friction && !c->search.plan.by_state)
         list_add(words, "Friction around a step is exact in the balance, "
                         "though not in the orbit: compare --by state.");
     failure_words(c, words);

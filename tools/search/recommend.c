@@ -33,7 +33,7 @@ static double work_limit_for(const recommendation *a, const row *pilot) {
    with the length. */
 static int first_place(const recommendation *a, const study *l) {
     const row *r = recommend_keeps(a, l);
-    double over = study_error(r, a->search.by_state) / a->target * stretch(a);
+    double over = study_error(r) / a->target * stretch(a);
     int k = l->k[r - l->level];
     return row_drifts(r) && over > 1 ? k + places_short(r, over) : k;
 }
@@ -56,14 +56,13 @@ static study verified(recommendation *a, const study *l) {
     for (int i = 0; i < TRIES && !(i && search_is_over(&a->search, 1)); i++) {
         size_t level = study_run(&a->search, &full, k);
         const row *r = &full.level[level];
-        double over = study_error(r, a->search.by_state) / a->target;
+        double over = study_error(r) / a->target;
         if (over <= 1 || r->over_limit)
             break;
         k += places_short(r, over) + i;
     }
     study_refine(&a->search, &full, a->target, 1);
-    full.end =
-        study_ends_level(&full, a->search.by_state) ? STUDY_FLOOR : STUDY_LIMIT;
+    full.end = study_ends_level(&full) ? STUDY_FLOOR : STUDY_LIMIT;
     return full;
 }
 
@@ -106,8 +105,8 @@ static bool adds_up(const recommendation *a, const study *l,
     int k = l->k[recommend_keeps(a, l) - l->level];
     for (size_t i = 0; i < usual->count; i++)
         if (usual->k[i] <= k)
-            least = study_error(&usual->level[i], false);
-    double own = study_error(recommend_keeps(a, l), false) - least;
+            least = study_error(&usual->level[i]);
+    double own = study_error(recommend_keeps(a, l)) - least;
     return least + stretch(a) * fabs(own) > a->target;
 }
 
@@ -119,7 +118,7 @@ static size_t list_pilots(const recommendation *a,
     for (size_t i = 0; i < listed; i++) {
         const study *l = found[i], *usual = usual_gradient(a, l);
         bool known = false;
-        if (!a->search.by_state && usual && adds_up(a, l, usual))
+        if (!a->search.plan.by_state && usual && adds_up(a, l, usual))
             l = usual;
         for (size_t k = 0; k < count; k++)
             known |= found[k] == l;
@@ -184,10 +183,9 @@ static void decide(recommendation *a) {
         const study *found[RECOMMEND_MOST];
         size_t count = recommend_list(a, found);
         for (size_t k = 0; k < count; k++) {
-            const row *r = recommend_keeps(a, found[k]);
+            row *r = recommend_keeps(a, found[k]);
             if (!(r->followed > 0))
-                row_follow(&a->search.plan,
-                           &found[k]->level[r - found[k]->level]);
+                row_follow(&a->search.plan, r);
         }
         recommend_choose(a);
     }
@@ -204,7 +202,7 @@ static int advise(const options *o, plan *p, double whole) {
         .target = fmax(fmax(o->search.state_error, o->search.energy_error),
                        o->search.error),
         .named = o->integrators.count > 0};
-    a.search.by_state = o->search.state_error > 0 || o->observable;
+    a.search.plan.by_state = o->search.state_error > 0 || o->observable;
     a.search.keeping = a.named;
     recommend_take_gradients(&a, o);
     recommend_search(&a);

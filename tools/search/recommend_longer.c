@@ -11,11 +11,6 @@ static const double most_work = 6; /* as nevh_counts_seconds */
    errors that walk. */
 static const double margin = 0.98;
 
-static row *chosen(const recommendation *a, const study *l) {
-    const row *r = study_cheapest(l, a->target, a->search.by_state);
-    return &l->level[r - l->level];
-}
-
 /* The same run once more, as `run` says; to be freed with its status. */
 static row again(const plan *run, const row *r, error_bound *bound) {
     row copy = {.integrator = r->integrator,
@@ -39,10 +34,9 @@ static void compare_orbit(const plan *p, row *r) {
 static void follow(const recommendation *a, const plan *longer, row *r) {
     double start = longer->run->t_start;
     error_bound *bound = tool_allocate(1, sizeof *bound);
-    *bound = (error_bound){
-        .most = fmax(margin * a->target, study_error(r, a->search.by_state)),
-        .by_state = a->search.by_state,
-        .until = start};
+    *bound = (error_bound){.most = fmax(margin * a->target, study_error(r)),
+                           .by_state = a->search.plan.by_state,
+                           .until = start};
     row copy = again(longer, r, bound);
     if (copy.over_limit)
         bound->unknown = true;
@@ -62,7 +56,7 @@ static plan longer_plan(recommendation *a) {
     longer.t_end = start + lengths * (longer.t_end - start);
     a->longer = longer.t_end;
     longer.reference = NULL;
-    if (!a->search.by_state)
+    if (!a->search.plan.by_state)
         return longer;
     longer.no_reference = NULL;
     plan_reference(&longer, longer.t_end);
@@ -82,7 +76,7 @@ void recommend_follow(recommendation *a, plan *p) {
     size_t count = recommend_list(a, found);
     plan *whole = &a->search.plan;
     whole->work_limit = 0;
-    if (!a->search.by_state) {
+    if (!a->search.plan.by_state) {
         plan_reference(p, whole->t_end);
         whole->reference = p->reference;
         whole->no_reference = p->no_reference;
@@ -91,12 +85,13 @@ void recommend_follow(recommendation *a, plan *p) {
             plan_energies(p);
         whole->energies = p->energies;
     }
-    for (size_t i = 0; i < count && !a->search.by_state && p->reference; i++)
-        compare_orbit(whole, chosen(a, found[i]));
+    for (size_t i = 0; i < count && !a->search.plan.by_state && p->reference;
+         i++)
+        compare_orbit(whole, recommend_chosen(a, found[i]));
     plan longer = longer_plan(a);
     for (size_t i = 0; i < count && !a->not_longer; i++)
-        follow(a, &longer, chosen(a, found[i]));
-    if (a->search.by_state) {
+        follow(a, &longer, recommend_chosen(a, found[i]));
+    if (a->search.plan.by_state) {
         nevh_reference_free(longer.reference);
         free(longer.no_reference);
     }

@@ -25,9 +25,12 @@ void recommend_take_gradients(recommendation *, const options *);
 /* Follows studies to ever finer levels, until the cheapest that keep the target
    are known and timed. */
 void recommend_search(recommendation *);
-/* The cheapest level of a study that keeps the target, if it counts; NULL:
-   none does. */
-const row *recommend_keeps(const recommendation *, const study *);
+/* True if its errors are comparable with those of other studies. */
+bool recommend_counts(const recommendation *, const study *);
+/* The cheapest level of a study that keeps the target; NULL: none does. */
+row *recommend_chosen(const recommendation *, const study *);
+/* The same of a study that counts, else NULL. */
+row *recommend_keeps(const recommendation *, const study *);
 /* The study that took least time, of those that keep the target, were timed and
    are not taken; NULL: there is none. */
 study *recommend_next_best(const recommendation *, const bool taken[]);

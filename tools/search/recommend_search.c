@@ -5,14 +5,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool counts(const recommendation *a, const study *l) {
-    return a->named || a->search.by_state || !study_keeps_energy(l);
+bool recommend_counts(const recommendation *a, const study *l) {
+    return a->named || a->search.plan.by_state || !study_keeps_energy(l);
+}
+
+row *recommend_chosen(const recommendation *a, const study *l) {
+    return study_cheapest(l, a->target);
 }
 
 /* The cheapest level that keeps the target, of the studies that count. */
-const row *recommend_keeps(const recommendation *a, const study *l) {
-    return counts(a, l) ? study_cheapest(l, a->target, a->search.by_state)
-                        : NULL;
+row *recommend_keeps(const recommendation *a, const study *l) {
+    return recommend_counts(a, l) ? recommend_chosen(a, l) : NULL;
 }
 
 /* The least work of the studies that take gradients: Taylor series that are far
@@ -21,8 +24,8 @@ static double least_work(const recommendation *a) {
     double least = INFINITY;
     for (size_t i = 0; i < a->count; i++) {
         const study *l = &a->study[i];
-        const row *r = study_cheapest(l, a->target, a->search.by_state);
-        if (counts(a, l) && study_takes_gradients(l) && r)
+        const row *r = recommend_keeps(a, l);
+        if (r && study_takes_gradients(l))
             least = fmin(least, r->work);
     }
     return least;
@@ -53,8 +56,7 @@ static void refine(recommendation *a) {
     for (size_t i = 0; i < a->count; i++) {
         study *l = &a->study[i];
         size_t k = 0;
-        while (k < l->count &&
-               study_error(&l->level[k], a->search.by_state) > a->target)
+        while (k < l->count && study_error(&l->level[k]) > a->target)
             k++;
         if (recommend_keeps(a, l) &&
             (k == 0 || l->level[k - 1].work < nearly * least_work(a)))
@@ -94,12 +96,12 @@ static size_t list_untimed(const recommendation *a, row *found[]) {
     size_t count = 0;
     for (size_t i = 0; i < a->count; i++) {
         study *l = &a->study[i];
-        const row *r = recommend_keeps(a, l);
+        row *r = recommend_keeps(a, l);
         bool varied = strcmp(l->gradient, a->gradients.item[0]) != 0;
         if (r && isnan(r->seconds) &&
             (varied || was_timed(l) || l == second || l == steady ||
              r->work < nearly * least))
-            found[count++] = &l->level[r - l->level];
+            found[count++] = r;
     }
     return count;
 }
@@ -136,7 +138,7 @@ static study with_gradient(recommendation *a, const study *l, int k,
     study other = study_like(l, gradient);
     for (int finer = 0; finer <= GRID_STRIDE; finer += GRID_COARSE) {
         size_t i = study_run(&a->search, &other, k + finer);
-        if (study_error(&other.level[i], a->search.by_state) <= a->target)
+        if (study_error(&other.level[i]) <= a->target)
             break;
     }
     other.end = STUDY_LIMIT;
@@ -218,8 +220,7 @@ void recommend_time_best(recommendation *a) {
     size_t count = list_best(a, factor, false, found, FEW);
     size_t repeats = a->search.repeats;
     for (size_t i = 0; i < count; i++)
-        level[i] =
-            &found[i]->level[recommend_keeps(a, found[i]) - found[i]->level];
+        level[i] = recommend_keeps(a, found[i]);
     rows_time(&a->search.plan, level, count, repeats ? repeats : USUAL,
               repeats > 0);
 }

@@ -5,10 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const row *chosen(const recommendation *a, const study *l) {
-    return study_cheapest(l, a->target, a->search.by_state);
-}
-
 size_t recommend_list(const recommendation *a,
                       const study *found[RECOMMEND_MOST]) {
     const study *const all[RECOMMEND_MOST] = {a->best, a->second, a->alone,
@@ -42,17 +38,17 @@ static void show_end(const recommendation *a, const row *r, table *t) {
 }
 
 static bool has_states(const recommendation *a) {
-    return !a->search.by_state && a->search.plan.reference;
+    return !a->search.plan.by_state && a->search.plan.reference;
 }
 
 static void show(const recommendation *a, const study *l, const char *what,
                  table *t) {
-    const row *r = chosen(a, l);
+    const row *r = recommend_chosen(a, l);
     table_text(t, what);
     table_text(t, r->integrator);
     table_text(t, study_takes_gradients(l) ? r->gradient : NULL);
     table_shown(t, "%.4g", r->dt);
-    table_shown(t, "%.1e", study_error(r, a->search.by_state));
+    table_shown(t, "%.1e", study_error(r));
     if (has_states(a))
         state_show(t, &a->search.plan, r);
     show_end(a, r, t);
@@ -89,7 +85,7 @@ static size_t list_rows(const recommendation *a, row rows[RECOMMEND_MOST]) {
     const study *found[RECOMMEND_MOST];
     size_t count = recommend_list(a, found);
     for (size_t i = 0; i < count; i++)
-        rows[i] = *chosen(a, found[i]);
+        rows[i] = *recommend_chosen(a, found[i]);
     return count;
 }
 
@@ -177,7 +173,7 @@ static void longer_words(const recommendation *a, const row *r, list *words) {
 /* Warns of errors that the energy does not show. */
 static void warn(const recommendation *a, const row *r, list *words) {
     const plan *p = &a->search.plan;
-    if (a->search.by_state || !p->reference)
+    if (a->search.plan.by_state || !p->reference)
         return;
     char *unseen = energies_unseen(p, r);
     if (state_out_of_step(r))
@@ -213,7 +209,7 @@ static void drift_words(const row *r, list *words) {
 
 static void answer_words(const recommendation *a, const options *o,
                          list *words) {
-    const row *r = chosen(a, a->best);
+    const row *r = recommend_chosen(a, a->best);
     const char *what = search_error(&a->search);
     char *line = command_line(a, o, r);
     bool gradients = study_takes_gradients(a->best);
@@ -223,8 +219,8 @@ static void answer_words(const recommendation *a, const options *o,
                r->integrator, gradients ? " with the " : "",
                gradients ? r->gradient : "", gradients ? " gradient" : "",
                r->tolerance > 0 ? "tolerance" : "dt",
-               r->tolerance > 0 ? r->tolerance : r->dt, what,
-               study_error(r, a->search.by_state), a->target);
+               r->tolerance > 0 ? r->tolerance : r->dt, what, study_error(r),
+               a->target);
     size_words(a, r, words);
     step_words(a, r, words);
     longer_words(a, r, words);
@@ -236,17 +232,17 @@ static void answer_words(const recommendation *a, const options *o,
     if (a->second)
         list_print(words, "%s, the runner-up, takes %.2f times as long.",
                    a->second->integrator,
-                   chosen(a, a->second)->seconds / r->seconds);
+                   recommend_chosen(a, a->second)->seconds / r->seconds);
     if (a->alone && a->alone != a->best && a->alone != a->second)
         list_print(words,
                    "From values of H alone %s with %s takes %.2f times as "
                    "long.",
                    a->alone->integrator, a->alone->gradient,
-                   chosen(a, a->alone)->seconds / r->seconds);
+                   recommend_chosen(a, a->alone)->seconds / r->seconds);
     if (a->steady && a->steady != a->best)
         list_print(words, "Without drift %s takes %.2f times as long.",
                    a->steady->integrator,
-                   chosen(a, a->steady)->seconds / r->seconds);
+                   recommend_chosen(a, a->steady)->seconds / r->seconds);
     list_print(words, "%zu runs were tried.", a->search.runs);
     list_add(words, " ");
     list_add(words, line);
@@ -275,10 +271,6 @@ void recommend_print(const recommendation *a, const options *o, FILE *f) {
     page_free(&p);
 }
 
-static bool counts(const recommendation *a, size_t i) {
-    return a->named || a->search.by_state || !study_keeps_energy(&a->study[i]);
-}
-
 /* Finds the smallest error of the studies that count; at_floor: of those that ended
    at their floor. */
 static const study *most_exact(const recommendation *a, bool at_floor,
@@ -286,11 +278,11 @@ static const study *most_exact(const recommendation *a, bool at_floor,
     const study *best = NULL;
     *least = INFINITY;
     for (size_t i = 0; i < a->count; i++)
-        for (size_t k = 0; counts(a, i) && k < a->study[i].count; k++) {
+        for (size_t k = 0;
+             recommend_counts(a, &a->study[i]) && k < a->study[i].count; k++) {
             if (at_floor && a->study[i].end != STUDY_FLOOR)
                 continue;
-            double error =
-                study_error(&a->study[i].level[k], a->search.by_state);
+            double error = study_error(&a->study[i].level[k]);
             if (error < *least)
                 *least = error, best = &a->study[i];
         }
@@ -328,7 +320,8 @@ static void print_reason(const recommendation *a) {
     bool keeps = false, late = false;
     for (size_t i = 0; i < a->count; i++) {
         const study *l = &a->study[i];
-        keeps |= !counts(a, i) && l->count && l->level[0].ran;
+        keeps |=
+            !recommend_counts(a, &a->study[i]) && l->count && l->level[0].ran;
         late |= l->end == STUDY_LIMIT;
         for (size_t k = 0; k < l->count && !failed; k++)
             if (l->level[k].failed && !l->level[k].over_limit)

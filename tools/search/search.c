@@ -42,7 +42,6 @@ static double seconds_of_children(void) {
 search search_begin(const plan *p, const options *o, double budget) {
     search s = {.plan = *p,
                 .repeats = o->search.repeats,
-                .by_state = o->search.by || o->observable,
                 .quiet = o->quiet,
                 .budget = budget,
                 .seconds = o->search.budget > 0 ? budget : most_seconds,
@@ -50,6 +49,7 @@ search search_begin(const plan *p, const options *o, double budget) {
                 .compiled = seconds_of_children(),
                 .landing = grid_dt(grid_dt_place(8 * search_longest_dt(p)))};
     s.plan.screening = true;
+    s.plan.by_state = o->search.by || o->observable;
     s.plan.work_limit =
         budget * fmax(one_row, one_scheme / (double)p->integrators.count);
     if (o->dt.count) {
@@ -61,7 +61,7 @@ search search_begin(const plan *p, const options *o, double budget) {
 }
 
 const char *search_error(const search *s) {
-    return !s->by_state         ? "energy"
+    return !s->plan.by_state    ? "energy"
            : s->plan.observable ? "observable"
                                 : "state";
 }

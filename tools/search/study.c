@@ -35,8 +35,8 @@ void study_free(study *l) {
     free(l->k);
 }
 
-double study_error(const row *r, bool by_state) {
-    double error = !by_state       ? r->energy.max
+double study_error(const row *r) {
+    double error = !r->by_state    ? r->energy.max
                    : r->observable ? r->observable_error
                                    : r->state_error;
     return r->ran && isfinite(error) ? error : INFINITY;
@@ -109,8 +109,8 @@ size_t study_run(search *s, study *l, int k) {
     return insert(l, i, k, r);
 }
 
-static bool is_usable(const study *l, size_t i, bool by_state) {
-    return study_error(&l->level[i], by_state) < usable_below;
+static bool is_usable(const study *l, size_t i) {
+    return study_error(&l->level[i]) < usable_below;
 }
 
 bool study_fits_steps(const search *s, int k) {
@@ -128,7 +128,7 @@ static void ascend(search *s, study *l) {
         if (!study_fits_steps(s, k))
             return;
         study_run(s, l, k);
-        if (!is_usable(l, 0, s->by_state)) {
+        if (!is_usable(l, 0)) {
             forget(l, 0);
             return;
         }
@@ -146,7 +146,7 @@ static void run_given(search *s, study *l) {
 
 /* True if the scheme is documented to keep the energy. */
 static bool is_kept(const search *s, const study *l) {
-    return !s->by_state && !s->keeping &&
+    return !s->plan.by_state && !s->keeping &&
            nevh_integrator_preserves_energy(l->scheme) == NEVH_YES;
 }
 
@@ -158,7 +158,7 @@ static bool keeps_at_any_step(search *s, const study *l) {
     enum { DOUBLINGS = 7 };
     if (nevh_integrator_adaptive(l->scheme) || !l->count)
         return false;
-    bool keeps = study_error(&l->level[0], false) < kept;
+    bool keeps = study_error(&l->level[0]) < kept;
     plan longer = s->plan;
     longer.reference = NULL;
     for (int i = 1; keeps && i <= DOUBLINGS && !search_is_over(s, 1); i++) {
@@ -168,7 +168,7 @@ static bool keeps_at_any_step(search *s, const study *l) {
                  .dt = ldexp(l->level[0].dt, i)};
         longer.t_end = fmax(s->plan.t_end, s->plan.run->t_start + steps * r.dt);
         run_row(s, &longer, &r);
-        keeps = study_error(&r, false) < kept;
+        keeps = study_error(&r) < kept;
         free(r.status);
     }
     return keeps;
@@ -185,7 +185,7 @@ static int first_place(const search *s, const study *l) {
 }
 
 static void find_out_whether_kept(search *s, study *l) {
-    l->keeps = !s->by_state &&
+    l->keeps = !s->plan.by_state &&
                (nevh_integrator_preserves_energy(l->scheme) == NEVH_YES ||
                 keeps_at_any_step(s, l));
 }
@@ -208,10 +208,10 @@ void study_begin(search *s, study *l) {
         l->end = STUDY_LIMIT;
     else if (!l->level[i].ran && !l->level[i].failed)
         l->end = STUDY_REFUSED;
-    else if (!adapts && is_usable(l, i, s->by_state) && !is_kept(s, l))
+    else if (!adapts && is_usable(l, i) && !is_kept(s, l))
         ascend(s, l);
     find_out_whether_kept(s, l);
-    if (!s->by_state && !s->keeping && study_keeps_energy(l))
+    if (!s->plan.by_state && !s->keeping && study_keeps_energy(l))
         l->end = STUDY_FLOOR;
 }
 
@@ -233,13 +233,12 @@ study *study_next(study studies[], size_t count) {
 
 /* Levels at the end that brought next to nothing.  Those of looser tolerances
    than the distance of outputs asks for are the same run. */
-static size_t count_level(const study *l, bool by_state) {
+static size_t count_level(const study *l) {
     static const double flat = 0.7, same = 0.99;
     size_t count = 0;
     for (size_t i = l->count; i-- > 1; count++) {
         const row *fine = &l->level[i], *coarse = &l->level[i - 1];
-        if (!(study_error(fine, by_state) >
-              flat * study_error(coarse, by_state)) ||
+        if (!(study_error(fine) > flat * study_error(coarse)) ||
             fine->dt > same * coarse->dt)
             break;
     }
@@ -248,24 +247,22 @@ static size_t count_level(const study *l, bool by_state) {
 
 /* True if shorter steps do not help: after one of them near rounding, elsewhere
    after several, since errors of coarse steps may be level, too. */
-static bool is_level(const study *l, bool by_state) {
+static bool is_level(const study *l) {
     static const double small = 1e-11, usual = 1e-2;
-    size_t count = count_level(l, by_state);
-    double last = study_error(&l->level[l->count - 1], by_state);
-    double first = study_error(&l->level[0], by_state);
+    size_t count = count_level(l);
+    double last = study_error(&l->level[l->count - 1]);
+    double first = study_error(&l->level[0]);
     return last <= rounding || (count > 0 && last < small) ||
            (count > 1 && last < 0.1 * first) || (count > 2 && last < usual);
 }
 
-bool study_ends_level(const study *l, bool by_state) {
-    return l->count && !l->level[l->count - 1].over_limit &&
-           is_level(l, by_state);
+bool study_ends_level(const study *l) {
+    return l->count && !l->level[l->count - 1].over_limit && is_level(l);
 }
 
 /* Coarse levels were of no use once a finer one is of some. */
-static void drop_useless(study *l, bool by_state) {
-    while (l->count > 1 && !is_usable(l, 0, by_state) &&
-           is_usable(l, l->count - 1, by_state))
+static void drop_useless(study *l) {
+    while (l->count > 1 && !is_usable(l, 0) && is_usable(l, l->count - 1))
         forget(l, 0);
 }
 
@@ -293,7 +290,7 @@ void study_descend(search *s, study *l) {
     bool finest = l->level[0].tolerance > 0 && last->tolerance < 1e-13;
     if (cannot_begin(l)) {
         l->end = STUDY_FAILED;
-    } else if (finest || is_level(l, s->by_state)) {
+    } else if (finest || is_level(l)) {
         l->end = STUDY_FLOOR;
     } else if (next_work(l) > s->plan.work_limit) {
         l->end = STUDY_LIMIT;
@@ -301,7 +298,7 @@ void study_descend(search *s, study *l) {
         study_run(s, l, l->k[l->count - 1] + GRID_STRIDE);
         if (l->level[l->count - 1].over_limit)
             give_up(l);
-        drop_useless(l, s->by_state);
+        drop_useless(l);
     }
 }
 
@@ -318,16 +315,15 @@ static double lead(const study *l, const study *other, bool useless) {
 bool study_is_behind(const search *s, const study *l, const study others[],
                      size_t count) {
     const row *last = &l->level[l->count - 1];
-    double error = study_error(last, s->by_state);
+    double error = study_error(last);
     bool useless = error >= usable_below;
     for (size_t i = 0; i < count; i++) {
         const study *m = &others[i];
         double factor = lead(l, m, useless);
         for (size_t k = 0; k < m->count; k++)
             if (m->gradient == l->gradient &&
-                (s->by_state || !study_keeps_energy(m)) &&
-                study_error(&m->level[k], s->by_state) <=
-                    fmin(error, usable_below) &&
+                (s->plan.by_state || !study_keeps_energy(m)) &&
+                study_error(&m->level[k]) <= fmin(error, usable_below) &&
                 factor * m->level[k].work < last->work)
                 return true;
     }
@@ -346,20 +342,19 @@ void study_time(const search *s, study *l, size_t i) {
 }
 
 /* The first level that keeps the target. */
-static size_t first_below(const study *l, double target, bool by_state) {
+static size_t first_below(const study *l, double target) {
     size_t i = 0;
-    while (i < l->count && study_error(&l->level[i], by_state) > target)
+    while (i < l->count && study_error(&l->level[i]) > target)
         i++;
     return i;
 }
 
 /* A place strictly between levels i - 1 and i: where the target is expected. */
-static int place_between(const study *l, size_t i, double target,
-                         bool by_state) {
+static int place_between(const study *l, size_t i, double target) {
     double step[2], error[2];
     for (size_t j = 0; j < 2; j++) {
         step[j] = grid_step(l, l->k[i - 1 + j]);
-        error[j] = study_error(&l->level[i - 1 + j], by_state);
+        error[j] = study_error(&l->level[i - 1 + j]);
     }
     int k = l->k[i] - 1;
     if (isinf(error[0]))
@@ -374,15 +369,15 @@ static int place_between(const study *l, size_t i, double target,
    stride itself was unusable or too long for the run. */
 static void refine_top(search *s, study *l, double target, int gap) {
     int beyond = l->k[0] - GRID_STRIDE;
-    while (study_error(&l->level[0], s->by_state) <= target &&
-           l->k[0] - beyond > gap && !search_is_over(s, 1)) {
+    while (study_error(&l->level[0]) <= target && l->k[0] - beyond > gap &&
+           !search_is_over(s, 1)) {
         int middle = beyond + (l->k[0] - beyond) / 2;
         bool runs = study_fits_steps(s, middle);
         if (runs)
             study_run(s, l, middle);
-        if (!runs || !is_usable(l, 0, s->by_state))
+        if (!runs || !is_usable(l, 0))
             beyond = middle;
-        if (runs && !is_usable(l, 0, s->by_state))
+        if (runs && !is_usable(l, 0))
             forget(l, 0);
     }
 }
@@ -394,11 +389,11 @@ void study_refine(search *s, study *l, double target, int gap) {
     if (!nevh_integrator_adaptive(l->scheme) && (!l->topped || gap < l->topped))
         refine_top(s, l, target, gap), l->topped = gap;
     for (int runs = 0; !search_is_over(s, 1); runs++) {
-        size_t i = first_below(l, target, s->by_state);
+        size_t i = first_below(l, target);
         if (i == 0 || i == l->count || l->k[i] - l->k[i - 1] <= gap)
             return;
         study_run(s, l,
-                  runs < SECANTS ? place_between(l, i, target, s->by_state)
+                  runs < SECANTS ? place_between(l, i, target)
                                  : l->k[i] - (l->k[i] - l->k[i - 1]) / 2);
     }
 }
@@ -422,13 +417,12 @@ void study_fill(search *s, study *l, size_t count) {
     }
 }
 
-const row *study_cheapest(const study *l, double target, bool by_state) {
+row *study_cheapest(const study *l, double target) {
     double *error = tool_allocate(l->count, sizeof *error);
     double *work = tool_allocate(l->count, sizeof *work);
     for (size_t i = 0; i < l->count; i++) {
         work[i] = l->level[i].work;
-        error[i] =
-            isnan(work[i]) ? INFINITY : study_error(&l->level[i], by_state);
+        error[i] = isnan(work[i]) ? INFINITY : study_error(&l->level[i]);
     }
     size_t i = grid_cheapest(error, work, l->count, target);
     free(error);

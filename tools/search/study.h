@@ -46,7 +46,7 @@ typedef struct {
 } study;
 typedef struct {
     plan plan; /* a copy, for screening */
-    bool by_state, quiet;
+    bool quiet;
     bool keeping;   /* steps of those that keep the energy at any are of use */
     size_t repeats; /* 0: chosen */
     double budget;  /* work for all rows */
@@ -87,7 +87,7 @@ void study_descend(search *, study *);
 /* True if some steps of that place fit into the run. */
 bool study_fits_steps(const search *, int k);
 /* True if shorter steps would not lessen the error, by its levels. */
-bool study_ends_level(const study *, bool by_state);
+bool study_ends_level(const study *);
 /* True if another study is so far ahead that shorter steps will not change it. */
 bool study_is_behind(const search *, const study *, const study others[],
                      size_t count);
@@ -100,7 +100,7 @@ void study_refine(search *, study *, double target, int gap);
 void study_fill(search *, study *, size_t count);
 size_t study_run(search *, study *, int k); /* index of the level */
 /* The error of states, or of the observable if rows have one; INFINITY: none. */
-double study_error(const row *, bool by_state);
+double study_error(const row *);
 const char *search_error(const search *); /* "energy", "state", "observable" */
 /* True if its scheme takes gradients; Taylor series take none. */
 bool study_takes_gradients(const study *);
@@ -108,7 +108,7 @@ bool study_takes_gradients(const study *);
 const row *study_failure(const study *);
 /* The level of least work: of one scheme and gradient that is the cheapest, on a
    busy machine too; NULL: none keeps the target. */
-const row *study_cheapest(const study *, double target, bool by_state);
+row *study_cheapest(const study *, double target);
 /* True if the energy is kept at any step, and so gives no error of the orbit: found
    by study_begin. */
 bool study_keeps_energy(const study *);
