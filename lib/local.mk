@@ -303,9 +303,9 @@ libnevh_core_la_SOURCES = \
 	lib/scene/sweep.c \
 	lib/scene/sweep_keep.c \
 	lib/scene/binding.c \
-	lib/scene/crew.c \
-	lib/scene/crew_lanes.c \
-	lib/scene/crew_private.h \
+	lib/scene/sweep_workers.c \
+	lib/scene/worker_lanes.c \
+	lib/scene/worker_private.h \
 	lib/scene/member.c \
 	lib/scene/scene.c
 

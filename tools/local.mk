@@ -3,7 +3,7 @@ tools_nevh_SOURCES = \
 	tools/cli/tool.h \
 	tools/experiment/plan.h \
 	tools/experiment/row.h \
-	tools/experiment/pace.h \
+	tools/experiment/trial_run.h \
 	tools/nevh.c \
 	tools/commands.c \
 	tools/help.c \

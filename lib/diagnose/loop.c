@@ -13,7 +13,8 @@ enum {
 static const double shortest = 1e-12; /* panel, in s */
 
 static size_t most_panels(const nevh_loop *l) {
-    size_t points = l->is.most_points ? l->is.most_points : MOST_POINTS;
+    size_t points =
+        l->options.most_points ? l->options.most_points : MOST_POINTS;
     return points / NEVH__NODES;
 }
 
@@ -50,14 +51,15 @@ static int plan_nodes(nevh_loop *l) {
 
 static int check_options(nevh_loop *l, const nevh_options *o,
                          const nevh_integrator *scheme) {
-    const nevh_loop_options *is = &l->is;
-    bool good = is->curve && is->times && is->steps && isfinite(is->t0) &&
-                isfinite(is->h) && (is->corners || !is->n_corners);
-    for (size_t i = 0; good && i < is->n_corners; i++)
-        good = is->corners[i] >= 0 && is->corners[i] < 1 &&
-               (!i || is->corners[i] > is->corners[i - 1]);
-    for (size_t i = 1; good && i < is->times; i++)
-        good = is->steps[i] >= is->steps[i - 1];
+    const nevh_loop_options *loop = &l->options;
+    bool good = loop->curve && loop->times && loop->steps &&
+                isfinite(loop->t0) && isfinite(loop->h) &&
+                (loop->corners || !loop->n_corners);
+    for (size_t i = 0; good && i < loop->n_corners; i++)
+        good = loop->corners[i] >= 0 && loop->corners[i] < 1 &&
+               (!i || loop->corners[i] > loop->corners[i - 1]);
+    for (size_t i = 1; good && i < loop->times; i++)
+        good = loop->steps[i] >= loop->steps[i - 1];
     if (!good)
         return nevh__fail(&l->report, NEVH_EINVAL,
                           "a loop needs a curve, corners that rise within "
@@ -89,23 +91,24 @@ static int plan_stepper(nevh_loop *l, const nevh_system *s,
 
 static int plan_corners(nevh_loop *l) {
     static const double beginning;
-    const double *given = l->is.n_corners ? l->is.corners : &beginning;
-    size_t count = l->is.n_corners ? l->is.n_corners : 1;
+    const double *given =
+        l->options.n_corners ? l->options.corners : &beginning;
+    size_t count = l->options.n_corners ? l->options.n_corners : 1;
     l->corners = nevh__array(count + 1, sizeof *l->corners);
-    l->steps = nevh__copy(l->is.steps, l->is.times, sizeof *l->steps);
+    l->steps = nevh__copy(l->options.steps, l->options.times, sizeof *l->steps);
     if (!l->corners || !l->steps)
         return nevh__no_memory(&l->report);
     memcpy(l->corners, given, count * sizeof *given);
     l->corners[count] = given[0] + 1;
-    l->is.n_corners = count;
-    l->is.corners = NULL;
-    l->is.steps = NULL;
+    l->options.n_corners = count;
+    l->options.corners = NULL;
+    l->options.steps = NULL;
     return NEVH_OK;
 }
 
 static void lay_out(nevh__arena *a, void *loop) {
     nevh_loop *l = loop;
-    size_t times = l->is.times, n = l->n;
+    size_t times = l->options.times, n = l->n;
     double **const numbers[] = {&l->taken_area, &l->taken_error, &l->unit,
                                 &l->area,       &l->error,       &l->noise};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
@@ -127,13 +130,13 @@ static int plan_memory(nevh_loop *l) {
 
 nevh_loop *nevh_loop_new(const nevh_system *s, const nevh_integrator *scheme,
                          const nevh_options *options,
-                         const nevh_loop_options *is) {
+                         const nevh_loop_options *loop) {
     static const nevh_options defaults;
     const nevh_options *o = options ? options : &defaults;
-    nevh_loop *l = s && scheme && is ? nevh__array(1, sizeof *l) : NULL;
+    nevh_loop *l = s && scheme && loop ? nevh__array(1, sizeof *l) : NULL;
     if (!l)
         return NULL;
-    l->is = *is;
+    l->options = *loop;
     l->n = nevh_system_dof(s);
     if (!check_options(l, o, scheme) && !plan_corners(l) && !plan_memory(l) &&
         !plan_nodes(l))
@@ -146,7 +149,7 @@ void nevh_loop_free(nevh_loop *l) {
         return;
     for (size_t i = 0; l->shape && i < l->panels; i++)
         free(l->shape[i].states);
-    for (size_t i = 0; l->memory && i < l->is.times; i++)
+    for (size_t i = 0; l->memory && i < l->options.times; i++)
         free(l->rough[i].item);
     nevh_stepper_free(l->stepper);
     free(l->corners);
@@ -184,7 +187,7 @@ static double length(const nevh_loop *l, size_t i) {
 /* The panels as they begin tell what is large: rounding and errors are of that. */
 static int find_units(nevh_loop *l, const nevh__queue *all) {
     static const double thin = 1e-3, nothing = 1e-6;
-    for (size_t i = 0; i < l->is.times * 2 * l->n; i++) {
+    for (size_t i = 0; i < l->options.times * 2 * l->n; i++) {
         l->low[i] = INFINITY;
         l->high[i] = -INFINITY;
     }
@@ -203,7 +206,7 @@ static int find_units(nevh_loop *l, const nevh__queue *all) {
                               "the curve encloses no area");
         l->unit[time] = fmax(fabs(l->area[0]), thin * box);
     }
-    memset(l->area, 0, l->is.times * sizeof *l->area);
+    memset(l->area, 0, l->options.times * sizeof *l->area);
     return NEVH_OK;
 }
 
@@ -215,7 +218,7 @@ static int accept(nevh_loop *l, nevh__panel at) {
         else
             l->error[i] += l->taken_error[i];
     }
-    if (l->is.shapes) {
+    if (l->options.shapes) {
         nevh__panel *more = nevh__grow(l->shape, l->panels + 1, sizeof *more);
         if (!more) {
             free(at.states);
@@ -231,10 +234,10 @@ static int accept(nevh_loop *l, nevh__panel at) {
 /* Accepts a panel that is smooth at all times, or that is the last resort; else
    it waits to be cut. */
 static int take(nevh_loop *l, nevh__panel at, bool last) {
-    if (l->is.shapes)
-        at.states =
-            nevh__array(2 * l->n * NEVH__NODES * l->is.times, sizeof(double));
-    if (l->is.shapes && !at.states)
+    if (l->options.shapes)
+        at.states = nevh__array(2 * l->n * NEVH__NODES * l->options.times,
+                                sizeof(double));
+    if (l->options.shapes && !at.states)
         return nevh__no_memory(&l->report);
     l->taken_times = 0;
     int status = nevh__loop_follow(
@@ -269,7 +272,7 @@ static int cut_all(nevh_loop *l) {
     while (!status) {
         nevh__queue *first = NULL;
         size_t waiting = 0;
-        for (size_t i = l->is.times; i-- > 0;) {
+        for (size_t i = l->options.times; i-- > 0;) {
             nevh__queue *here = &l->rough[i];
             waiting += here->count - here->front;
             first = here->count > here->front ? here : first;
@@ -284,7 +287,7 @@ static int cut_all(nevh_loop *l) {
 static int begin(nevh_loop *l) {
     nevh__queue all = {0};
     int status = NEVH_OK;
-    for (size_t c = 0; !status && c < l->is.n_corners; c++)
+    for (size_t c = 0; !status && c < l->options.n_corners; c++)
         for (int i = 0; !status && i < PIECES; i++) {
             double from = l->corners[c], length = l->corners[c + 1] - from;
             status = put(l, &all, from + length * i / PIECES,
@@ -309,7 +312,7 @@ int nevh_loop_carry(nevh_loop *l) {
     if (l->report.status || l->carried)
         return l->report.status;
     l->carried = true;
-    l->reach = l->is.times;
+    l->reach = l->options.times;
     int status = begin(l);
     if (!status)
         status = cut_all(l);
@@ -324,9 +327,9 @@ int nevh_loop_carry(nevh_loop *l) {
 
 nevh_loop_area nevh_loop_result(const nevh_loop *l, size_t i) {
     nevh_loop_area r = {NAN, NAN, NAN, 0, false};
-    if (!l || i >= l->is.times || !l->steps)
+    if (!l || i >= l->options.times || !l->steps)
         return r;
-    r.t = l->is.t0 + (double)l->steps[i] * l->is.h;
+    r.t = l->options.t0 + (double)l->steps[i] * l->options.h;
     if (l->carried && i < l->reach) {
         r.area = l->area[i];
         r.error = l->error[i] + sqrt(l->noise[i]);

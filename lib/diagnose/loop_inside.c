@@ -67,9 +67,10 @@ static int carry_point(inside *x, double q, double p, double weight,
     size_t step = 0;
     for (size_t time = 0; time < l->reach; time++) {
         for (; step < l->steps[time]; step++) {
-            double t = l->is.t0 + (double)step * l->is.h;
+            double t = l->options.t0 + (double)step * l->options.h;
             spread_out(x, q, p);
-            int status = nevh_stepper_apply(l->stepper, t, l->is.h, l->q, l->p);
+            int status =
+                nevh_stepper_apply(l->stepper, t, l->options.h, l->q, l->p);
             if (status)
                 return status;
             product *= determinant(x);
@@ -112,9 +113,9 @@ static int carry_panel(inside *x, const nevh__panel *at) {
 
 static int carry_panels(inside *x) {
     nevh_loop *l = x->loop;
-    size_t pieces = PANELS / l->is.n_corners + 1;
+    size_t pieces = PANELS / l->options.n_corners + 1;
     int status = NEVH_OK;
-    for (size_t c = 0; !status && c < l->is.n_corners; c++)
+    for (size_t c = 0; !status && c < l->options.n_corners; c++)
         for (size_t i = 0; !status && i < pieces; i++) {
             double from = l->corners[c], length = l->corners[c + 1] - from;
             double end = (double)(i + 1) / (double)pieces;
@@ -151,10 +152,10 @@ int nevh__loop_look_inside(nevh_loop *l) {
         asked = asked || !(l->error[i] <= certain * fabs(l->area[i]));
     if (!asked || l->n != 1)
         return NEVH_OK;
-    x.sum[0] = nevh__array(2 * l->is.times, sizeof *x.sum[0]);
+    x.sum[0] = nevh__array(2 * l->options.times, sizeof *x.sum[0]);
     if (!x.sum[0])
         return nevh__no_memory(&l->report);
-    x.sum[1] = x.sum[0] + l->is.times;
+    x.sum[1] = x.sum[0] + l->options.times;
     for (int i = 0; i < 2; i++)
         x.length[i] = spread * (l->high[i] - l->low[i]);
     plan_slopes(&x);

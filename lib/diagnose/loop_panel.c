@@ -91,7 +91,7 @@ int nevh__loop_place(nevh_loop *l, const nevh__panel *at) {
         s[j] = at->from + (at->to - at->from) * (l->node[j] + 1) / 2;
         s[j] = s[j] >= 1 ? s[j] - 1 : s[j];
     }
-    return l->is.curve(l->is.data, NEVH__NODES, s, l->q, l->p)
+    return l->options.curve(l->options.data, NEVH__NODES, s, l->q, l->p)
                ? nevh__fail(&l->report, NEVH_EFAILED,
                             "the curve of starts ended the run")
                : NEVH_OK;
@@ -101,13 +101,13 @@ static int advance(nevh_loop *l, size_t time) {
     size_t from = time ? l->steps[time - 1] : 0;
     if (l->steps[time] == from)
         return NEVH_OK;
-    return nevh_run(l->stepper, l->is.t0 + (double)from * l->is.h, l->is.h,
-                    l->steps[time] - from, l->q, l->p, NULL, 0);
+    return nevh_run(l->stepper, l->options.t0 + (double)from * l->options.h,
+                    l->options.h, l->steps[time] - from, l->q, l->p, NULL, 0);
 }
 
 /* From then on there is no area. */
 static void end_at(nevh_loop *l, size_t time, int status) {
-    double t = l->is.t0 + (double)l->steps[time] * l->is.h;
+    double t = l->options.t0 + (double)l->steps[time] * l->options.h;
     l->reach = time;
     nevh__fail(&l->report, status,
                "a point of the curve failed before t = %g: %s", t,
@@ -156,7 +156,7 @@ bool nevh__loop_measure(nevh_loop *l, nevh__panel *at, size_t time) {
 bool nevh__loop_keep(nevh_loop *l, nevh__panel *at, size_t time) {
     size_t size = l->n * NEVH__NODES;
     integrate(l, time);
-    if (l->is.shapes) {
+    if (l->options.shapes) {
         memcpy(at->states + 2 * size * time, l->q, size * sizeof(double));
         memcpy(at->states + 2 * size * time + size, l->p,
                size * sizeof(double));

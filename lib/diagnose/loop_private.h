@@ -24,7 +24,7 @@ typedef struct {
 
 struct nevh_loop {
     nevh__report report;
-    nevh_loop_options is;
+    nevh_loop_options options;
     nevh_stepper *stepper;
     size_t n;
     void *memory;    /* of arrays, but for corners, steps and shape */

@@ -21,16 +21,16 @@ static void take_outcome(nevh_ensemble *e, size_t i) {
 }
 
 static int take_outcomes(nevh_ensemble *e) {
-    e->n_outcomes = e->is.n_outcomes;
+    e->n_outcomes = e->options.n_outcomes;
     e->outcomes = nevh__array(e->n_outcomes, sizeof *e->outcomes);
     e->crossing_of = nevh__array(e->n_outcomes, sizeof *e->crossing_of);
     e->crossings = nevh__array(e->n_outcomes, sizeof *e->crossings);
     if (!e->outcomes || !e->crossing_of || !e->crossings)
         return nevh__no_memory(&e->report);
-    e->watches = e->is.stop.value;
-    e->moving = e->is.stop.value && e->is.stop.velocities;
+    e->watches = e->options.stop.value;
+    e->moving = e->options.stop.value && e->options.stop.velocities;
     for (size_t i = 0; i < e->n_outcomes; i++) {
-        const nevh_outcome *o = &e->is.outcomes[i];
+        const nevh_outcome *o = &e->options.outcomes[i];
         const nevh__outcome_type *type = nevh__outcome_type_of(o->kind);
         if (!type || (type->info.takes && !o->quantity.value))
             return nevh__fail(&e->report, NEVH_EINVAL,
@@ -45,9 +45,10 @@ static int take_outcomes(nevh_ensemble *e) {
 
 /* Chooses the number of orbits side by side. */
 static size_t choose_width(const nevh_ensemble *e, const nevh_options *o) {
-    const nevh_integrator *scheme = e->is.integrator;
-    size_t width = e->is.width ? e->is.width : WIDTH;
-    while (!e->is.width && width > NEVH__LANES && width * e->n > MOST_NUMBERS)
+    const nevh_integrator *scheme = e->options.integrator;
+    size_t width = e->options.width ? e->options.width : WIDTH;
+    while (!e->options.width && width > NEVH__LANES &&
+           width * e->n > MOST_NUMBERS)
         width /= 2;
     if (scheme->own_time || o->transform || (scheme->adaptive && o->balance) ||
         width == 1)
@@ -80,7 +81,7 @@ int nevh__ensemble_stepper(nevh_ensemble *e, const nevh_system *system,
     int status = repeat_state(e, width, &o, &room);
     if (status)
         return status;
-    *s = nevh_stepper_new(system, e->is.integrator, &o);
+    *s = nevh_stepper_new(system, e->options.integrator, &o);
     free(room);
     if (!*s)
         return nevh__no_memory(&e->report);
@@ -93,8 +94,8 @@ static int plan_energy(nevh_ensemble *e, const nevh_options *options) {
     e->energy = nevh_energy_new(e->system, &o);
     if (!e->energy)
         return nevh__no_memory(&e->report);
-    if (e->is.energy_scale != 0)
-        nevh_energy_set_scale(e->energy, e->is.energy_scale);
+    if (e->options.energy_scale != 0)
+        nevh_energy_set_scale(e->energy, e->options.energy_scale);
     nevh_energy_follow(e->energy, e->stepper);
     nevh_energy_expect(e->energy, e->stepper);
     return nevh_energy_status(e->energy)
@@ -190,22 +191,23 @@ static int plan_outcomes(nevh_ensemble *e, const nevh_options *options) {
 }
 
 static int check_times(nevh_ensemble *e) {
-    const nevh_ensemble_options *is = &e->is;
-    double steps = (is->t_end - is->t_start) / is->dt;
+    const nevh_ensemble_options *o = &e->options;
+    double steps = (o->t_end - o->t_start) / o->dt;
     if (!(steps >= 0 && steps < 0x1p53))
         return nevh__fail(&e->report, NEVH_EINVAL,
                           "no number of steps of %g leads from %.9g to %.9g",
-                          is->dt, is->t_start, is->t_end);
-    e->h = is->dt;
-    e->whole = nevh__whole_steps(is->t_end - is->t_start, &e->h, &e->steps);
+                          o->dt, o->t_start, o->t_end);
+    e->h = o->dt;
+    e->whole = nevh__whole_steps(o->t_end - o->t_start, &e->h, &e->steps);
     return NEVH_OK;
 }
 
 static int plan(nevh_ensemble *e) {
-    nevh_options o = e->is.options ? *e->is.options : (nevh_options){0};
+    nevh_options o =
+        e->options.options ? *e->options.options : (nevh_options){0};
     if (e->system->report.status)
         return nevh__fail_as(&e->report, &e->system->report);
-    if (!e->is.integrator)
+    if (!e->options.integrator)
         return nevh__fail(&e->report, NEVH_EINVAL,
                           "the integrator is NULL: is its name spelt right?");
     e->n = e->system->n;
@@ -235,7 +237,7 @@ static int plan(nevh_ensemble *e) {
         status = plan_rooms(e);
     if (!status)
         status = plan_outcomes(e, &o);
-    if (!status && nevh__ensemble_tells_chaos(e))
+    if (!status && nevh__ensemble_has_chaos(e))
         status = nevh__chaotic_plan(e, &o);
     return !status && e->n_crossings ? nevh__ensemble_plan_crossings(e)
                                      : status;
@@ -247,11 +249,11 @@ nevh_ensemble *nevh_ensemble_new(const nevh_system *system,
     if (!e)
         return NULL;
     e->system = system;
-    e->is = *options;
+    e->options = *options;
     int status = plan(e);
     e->planned = !status;
-    e->is.options = NULL; /* borrowed until now */
-    e->is.outcomes = NULL;
+    e->options.options = NULL; /* borrowed until now */
+    e->options.outcomes = NULL;
     if (status != NEVH_ENOMEM)
         return e;
     nevh_ensemble_free(e);

@@ -46,7 +46,7 @@ typedef struct nevh__chaotic nevh__chaotic;
 struct nevh_ensemble {
     const nevh_system *system;
     size_t n, width, stride; /* stride: of values, a multiple of NEVH__LANES */
-    nevh_ensemble_options is;
+    nevh_ensemble_options options;
     nevh__outcome_entry *outcomes;
     size_t n_outcomes, columns;
     nevh_stepper *stepper;        /* of all lanes */
@@ -128,7 +128,7 @@ void nevh__ensemble_free_crossings(nevh_ensemble *);
 void nevh__ensemble_look_at_crossings(nevh_ensemble *);
 
 /* outcomes/chaotic.c: outcomes that tell chaos. */
-bool nevh__ensemble_tells_chaos(const nevh_ensemble *);
+bool nevh__ensemble_has_chaos(const nevh_ensemble *);
 int nevh__chaotic_plan(nevh_ensemble *, const nevh_options *);
 void nevh__chaotic_free(nevh__chaotic *); /* NULL is allowed */
 /* Keeps where a lane's orbit starts: e->q1, e->p1. */

@@ -85,7 +85,7 @@ static bool begin(nevh_ensemble *e, size_t lane) {
                       .look = true,
                       .member = member,
                       .narrow = l->narrow,
-                      .t = e->is.t_start};
+                      .t = e->options.t_start};
     put_column(e->q, e->n, e->width, lane, e->q1);
     put_column(e->p, e->n, e->width, lane, e->p1);
     if (e->chaotic)
@@ -182,7 +182,8 @@ static void step_together(nevh_ensemble *e) {
         l->look = l->busy && !l->over;
         l->step++;
         bool last = e->whole && (double)l->step >= e->steps;
-        l->t = last ? e->is.t_end : e->is.t_start + (double)l->step * e->h;
+        l->t = last ? e->options.t_end
+                    : e->options.t_start + (double)l->step * e->h;
     }
 }
 
@@ -214,8 +215,8 @@ static void look_back_in(nevh_ensemble *e, size_t lane, double h) {
 
 /* Takes the shorter step to t_end in lanes that have taken all others. */
 static void step_to_end(nevh_ensemble *e) {
-    double reached = e->is.t_start + e->steps * e->h;
-    double rest = e->is.t_end - reached;
+    double reached = e->options.t_start + e->steps * e->h;
+    double rest = e->options.t_end - reached;
     bool any = false;
     for (size_t lane = 0; lane < e->width; lane++) {
         nevh__lane *l = &e->lanes[lane];
@@ -225,7 +226,7 @@ static void step_to_end(nevh_ensemble *e) {
             look_back_in(e, lane, rest);
             l->look = lane_step(e, lane, rest);
             l->step++;
-            l->t = e->is.t_end;
+            l->t = e->options.t_end;
         }
         any |= l->look;
         l->ends = ends;
@@ -318,15 +319,15 @@ static void run_one(nevh_ensemble *e) {
     nevh_stepper *s = e->stepper;
     nevh_observer observers[] = {{observe, e, 1}, {observe_sections, e, 1}};
     nevh_stepper_reset(s);
-    s->last_t = e->is.t_start;
+    s->last_t = e->options.t_start;
     s->time_roundoff = 0;
     if (e->sections)
         e->sections->begun = false;
     double *q = e->run_q, *p = e->run_p;
     memcpy(q, e->q, e->n * sizeof *q);
     memcpy(p, e->p, e->n * sizeof *p);
-    int status = nevh_run_until(s, e->is.t_start, e->is.dt, e->is.t_end, q, p,
-                                observers, 2);
+    int status = nevh_run_until(s, e->options.t_start, e->options.dt,
+                                e->options.t_end, q, p, observers, 2);
     e->stopped = status == NEVH_STOPPED && !e->lanes->over;
     if (e->stopped)
         return;

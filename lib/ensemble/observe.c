@@ -38,9 +38,9 @@ void nevh__ensemble_move(nevh_ensemble *e, const double t[], const double q[],
 
 void nevh__ensemble_value(const nevh_ensemble *e, size_t o, const double t[],
                           const double q[], const double p[], double values[]) {
-    const nevh_quantity *is = &e->outcomes[o].decl.quantity;
-    is->value(is->data, e->stride, t, q, p, is->velocities ? e->v : NULL,
-              values);
+    const nevh_quantity *quantity = &e->outcomes[o].decl.quantity;
+    quantity->value(quantity->data, e->stride, t, q, p,
+                    quantity->velocities ? e->v : NULL, values);
 }
 
 static void evaluate(nevh_ensemble *e) {
@@ -53,26 +53,26 @@ static void evaluate(nevh_ensemble *e) {
         if (e->outcomes[i].decl.quantity.value)
             nevh__ensemble_value(e, i, e->now.t, e->wide_q, e->wide_p,
                                  e->now.value + i * e->stride);
-    const nevh_quantity *stop = &e->is.stop;
+    const nevh_quantity *stop = &e->options.stop;
     if (stop->value)
         stop->value(stop->data, e->stride, e->now.t, e->wide_q, e->wide_p,
                     stop->velocities ? e->v : NULL, e->stop);
 }
 
 double nevh__narrow_value(nevh_ensemble *e, size_t o, double t) {
-    const nevh_quantity *is = &e->outcomes[o].decl.quantity;
+    const nevh_quantity *quantity = &e->outcomes[o].decl.quantity;
     for (size_t lane = 0; lane < NEVH__LANES; lane++)
         e->t1[lane] = t;
     for (size_t i = 0; i < e->n * NEVH__LANES; i++) {
         e->wide_q1[i] = e->q1[i / NEVH__LANES];
         e->wide_p1[i] = e->p1[i / NEVH__LANES];
     }
-    if (is->velocities &&
+    if (quantity->velocities &&
         nevh_field_gradient(e->motion, NEVH__LANES, e->t1, e->wide_q1,
                             e->wide_p1, NULL, e->v1))
         return NAN;
-    is->value(is->data, NEVH__LANES, e->t1, e->wide_q1, e->wide_p1,
-              is->velocities ? e->v1 : NULL, e->value1);
+    quantity->value(quantity->data, NEVH__LANES, e->t1, e->wide_q1, e->wide_p1,
+                    quantity->velocities ? e->v1 : NULL, e->value1);
     return e->value1[0];
 }
 
@@ -143,7 +143,7 @@ static void look_at_energy(nevh_ensemble *e) {
 }
 
 void nevh__ensemble_look(nevh_ensemble *e) {
-    nevh__observation at = {.ensemble = e, .t_start = e->is.t_start};
+    nevh__observation at = {.ensemble = e, .t_start = e->options.t_start};
     evaluate(e);
     if (e->energy)
         look_at_energy(e);
@@ -154,7 +154,7 @@ void nevh__ensemble_look(nevh_ensemble *e) {
         turn_to_lane(&at, lane);
         take(&at, l->fresh);
         l->over |=
-            all_known(e, lane) || (e->is.stop.value && e->stop[lane] > 0);
+            all_known(e, lane) || (e->options.stop.value && e->stop[lane] > 0);
         l->fresh = false;
     }
     if (e->crossing_lanes)
@@ -168,7 +168,7 @@ void nevh__ensemble_fail(nevh_ensemble *e, size_t lane,
 }
 
 static void collect(nevh_ensemble *e, size_t lane) {
-    nevh__observation at = {.ensemble = e, .t_start = e->is.t_start};
+    nevh__observation at = {.ensemble = e, .t_start = e->options.t_start};
     double *to = e->result;
     turn_to_lane(&at, lane);
     for (size_t o = 0; o < e->n_outcomes; o++) {

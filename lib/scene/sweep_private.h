@@ -110,6 +110,6 @@ bool nevh__lane_form_fits(const nevh_sweep *, nevh__lane_form *,
 bool nevh__variant_solve(const nevh_sweep *, const nevh__variant *, size_t i,
                          double q[], double p[]);
 
-/* crew.c: the run. */
+/* sweep_workers.c: the run. */
 
 #endif

@@ -117,7 +117,8 @@ static bool is_explained(const hard_subject *s, const hard_result *r) {
 }
 
 static char *tell_cause(const hard_subject *s, const hard_result *r) {
-    pace fastest = {.turning = r->frequency, .turning_at = r->fastest_at};
+    largest_rates fastest = {.frequency = r->frequency,
+                             .frequency_at = r->fastest_at};
     char *cause = stability_cause(r->scheme, r->limit, s->dt, &fastest);
     if (cause)
         return cause;

@@ -3,7 +3,7 @@
 #ifndef NEVH_HARD_JUDGE_H
 #define NEVH_HARD_JUDGE_H
 
-#include "experiment/pace.h"
+#include "experiment/trial_run.h"
 #include "hard/hard_cases.h"
 
 /* What is known of a case beforehand, an or. */

@@ -138,11 +138,11 @@ static void find_pace(const hard_subject *s, const nevh_options *o,
                       hard_result *r) {
     nevh_options own = *o;
     own.gradient_step = s->own ? 0x1p-6 : o->gradient_step;
-    pace fastest =
-        stability_pace(s->system, r->scheme, &own, 0, s->dt,
-                       s->t + s->dt * fmin((double)r->steps + 1, r->asked));
-    if (fastest.turning > r->frequency)
-        r->frequency = fastest.turning, r->fastest_at = fastest.turning_at;
+    largest_rates fastest =
+        stability_rates(s->system, r->scheme, &own, 0, s->dt,
+                        s->t + s->dt * fmin((double)r->steps + 1, r->asked));
+    if (fastest.frequency > r->frequency)
+        r->frequency = fastest.frequency, r->fastest_at = fastest.frequency_at;
 }
 
 static void run_planned(const hard_subject *s, nevh_stepper *m,

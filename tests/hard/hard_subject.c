@@ -66,7 +66,7 @@ static void start(hard_subject *s) {
 
 typedef struct {
     hard_subject *subject;
-    pace fastest;
+    largest_rates fastest;
     nevh_field *field;
     double *effects, *slope, largest, rounding;
     const nevh_stepper *stepper;
@@ -77,7 +77,7 @@ static void look_at_rounding(survey *s, double t, const double q[],
                              const double p[]) {
     size_t n = s->subject->n;
     double sum =
-        s->subject->balance ? fabs(t) * s->fastest.frequency * s->largest : 0;
+        s->subject->balance ? fabs(t) * s->fastest.rate * s->largest : 0;
     if (nevh_field_gradient(s->field, 1, &t, q, p, s->slope, s->slope + n))
         return;
     for (size_t k = 0; k < n; k++)
@@ -89,7 +89,7 @@ static int look(void *data, size_t step, double t, const double q[],
                 const double p[]) {
     survey *s = data;
     size_t count = nevh_system_effect_count(s->subject->system);
-    pace_observe(&s->fastest, step, t, q, p);
+    largest_rates_observe(&s->fastest, step, t, q, p);
     if (!nevh_field_effects(s->field, t, q, p, s->effects))
         for (size_t i = 0; i < count; i++)
             s->largest = fmax(s->largest, fabs(s->effects[i]));
@@ -136,9 +136,9 @@ static void explore(hard_subject *s) {
     v.slope = tool_allocate(2 * s->n, sizeof(double));
     v.fastest.rates = nevh_rates_new(s->system, &o);
     integrate(s, &v, &o);
-    s->frequency = v.fastest.turning;
-    s->fastest_at = v.fastest.turning_at;
-    s->pace = v.fastest.frequency;
+    s->frequency = v.fastest.frequency;
+    s->fastest_at = v.fastest.frequency_at;
+    s->pace = v.fastest.rate;
     s->scale = energy_scale(s, &o);
     s->peak = fmax(1, v.largest / s->scale);
     s->rounding = v.rounding / s->scale;

@@ -2,7 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
 #include "experiment/envelope.h"
-#include "experiment/pace.h"
+#include "experiment/trial_run.h"
 #include "plot/order_plot.h"
 #include <math.h>
 #include <stdlib.h>

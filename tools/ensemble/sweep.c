@@ -196,7 +196,7 @@ void sweep_tell_undefined(const sweep_job *j) {
 }
 
 /* Members that are not done are told of, never dropped. */
-static int tell_failures(const sweep_job *j) {
+static int report_failures(const sweep_job *j) {
     char *known = j->fails ? member_why(&j->plan, j->first, j->why)
                            : text_print("%s", j->why ? j->why : "");
     char *why =
@@ -224,7 +224,7 @@ static int draw(sweep_job *j) {
     if (!j->options->quiet)
         printf("%s: %" PRIu64 " members; -o FILE writes them\n",
                j->options->picture, j->count);
-    return tell_failures(j);
+    return report_failures(j);
 }
 
 static int run(sweep_job *j) {
@@ -234,7 +234,7 @@ static int run(sweep_job *j) {
         return TOOL_USAGE;
     print_head(j);
     int status = run_all(j, print_row);
-    status = output_close(&j->out, status ? status : tell_failures(j));
+    status = output_close(&j->out, status ? status : report_failures(j));
     return status != TOOL_USAGE && map_draw(j->map, j->integrator) ? TOOL_USAGE
                                                                    : status;
 }

@@ -57,7 +57,7 @@ static char *describe(const sweep_job *j) {
 }
 
 /* For who reads the side file. */
-static char *tell_story(const sweep_job *j) {
+static char *describe_file(const sweep_job *j) {
     char *all = text_print("%s", "");
     for (size_t i = 0; i < j->notes.count; i++)
         text_extend(&all, "# %s\n", j->notes.item[i]);
@@ -86,7 +86,7 @@ static int keep(void *data, const nevh_sweep_result *r) {
 }
 
 /* Reports the counts of the file, those of earlier runs included. */
-static int tell_array(sweep_job *j) {
+static int report_array(sweep_job *j) {
     uint64_t have[4] = {0};
     store *s = &j->store;
     double *values = tool_allocate(s->columns->count, sizeof *values);
@@ -136,7 +136,7 @@ static int run_array(sweep_job *j) {
         status = ranks_close(&j->ranks, status);
     j->store.write = NULL;
     if (!status && !j->ranks.rank)
-        status = store_finish(&j->store) ? TOOL_USAGE : tell_array(j);
+        status = store_finish(&j->store) ? TOOL_USAGE : report_array(j);
     return ranks_agree(&j->ranks, status);
 }
 
@@ -204,7 +204,7 @@ static int join(sweep_job *j) {
         status = store_finish(&j->store);
     if (!status)
         status = store_settle(&j->store);
-    return status ? status : tell_array(j);
+    return status ? status : report_array(j);
 }
 
 /* As far as members were run. */
@@ -223,7 +223,7 @@ static int draw_array(sweep_job *j, int status) {
 
 int sweep_array(sweep_job *j) {
     const options *o = j->options;
-    char *settings = describe(j), *story = tell_story(j), *name = NULL;
+    char *settings = describe(j), *story = describe_file(j), *name = NULL;
     j->store = (store){.file = -1,
                        .columns = &j->columns,
                        .settings = settings,

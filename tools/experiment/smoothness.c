@@ -5,7 +5,7 @@
    functions of the formulas for the edges of their domains, on the orbit and
    nowhere else.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "experiment/pace.h"
+#include "experiment/trial_run.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

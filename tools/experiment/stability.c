@@ -1,6 +1,6 @@
 /* nevh: why a run became unstable, and what to do.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pace.h"
+#include "trial_run.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,18 +11,18 @@ static const double unstable_above = 1; /* as nevh_energy_report says */
    three and of four steps. */
 static const double near_by = 0.06;
 
-int pace_observe(void *data, size_t step, double t, const double q[],
-                 const double p[]) {
-    pace *fastest = data;
+int largest_rates_observe(void *data, size_t step, double t, const double q[],
+                          const double p[]) {
+    largest_rates *fastest = data;
     double frequency, growth;
     (void)step;
     if (nevh_rates_at(fastest->rates, t, q, p, &frequency, &growth))
         return NEVH_OK;
     double rate = fmax(frequency, growth); /* of whatever kind */
-    if (rate > fastest->frequency)
-        fastest->frequency = rate, fastest->t = t;
-    if (frequency > fastest->turning)
-        fastest->turning = frequency, fastest->turning_at = t;
+    if (rate > fastest->rate)
+        fastest->rate = rate, fastest->rate_at = t;
+    if (frequency > fastest->frequency)
+        fastest->frequency = frequency, fastest->frequency_at = t;
     return NEVH_OK;
 }
 
@@ -67,15 +67,15 @@ static char *cause_at(const nevh_integrator *scheme, double limit, double x,
 }
 
 char *stability_cause(const nevh_integrator *scheme, double limit, double dt,
-                      const pace *fastest) {
-    double w = fastest->turning, x = fabs(dt) * w;
+                      const largest_rates *fastest) {
+    double w = fastest->frequency, x = fabs(dt) * w;
     const char *turn = resonance(scheme, x);
     if (!(x > 0) || !isfinite(x))
         return NULL;
     char *where =
         text_print("omega dt = %.3g near t = %.4g, where the orbit is "
                    "fastest (omega = %.3g)",
-                   x, fastest->turning_at, w);
+                   x, fastest->frequency_at, w);
     char *text = cause_at(scheme, limit, x, where);
     if (turn && (x <= limit))
         text_extend(&text, "%s%s%s steps make a turn: a resonance",
@@ -86,7 +86,7 @@ char *stability_cause(const nevh_integrator *scheme, double limit, double dt,
 
 /* More often at the start, since a run may end soon. */
 typedef struct {
-    pace *fastest;
+    largest_rates *fastest;
     size_t next;
 } start;
 
@@ -96,12 +96,13 @@ static int observe_early(void *data, size_t step, double t, const double q[],
     if (step < s->next)
         return NEVH_OK;
     s->next = step + step / 4 + 1;
-    return pace_observe(s->fastest, step, t, q, p);
+    return largest_rates_observe(s->fastest, step, t, q, p);
 }
 
-pace stability_pace(const nevh_system *system, const nevh_integrator *scheme,
-                    const nevh_options *o, double scale, double dt,
-                    double t_end) {
+largest_rates stability_rates(const nevh_system *system,
+                              const nevh_integrator *scheme,
+                              const nevh_options *o, double scale, double dt,
+                              double t_end) {
     size_t n = nevh_system_dof(system);
     nevh_stepper *s = nevh_stepper_new(system, scheme, o);
     double *q = tool_allocate(n, sizeof *q), *p = tool_allocate(n, sizeof *p);
@@ -109,7 +110,7 @@ pace stability_pace(const nevh_system *system, const nevh_integrator *scheme,
     own.gradient = NULL;
     own.gradient_step = 0;
     energy_limit e = {nevh_energy_new(system, o), .limit = unstable_above};
-    pace fastest = {.rates = nevh_rates_new(system, &own)};
+    largest_rates fastest = {.rates = nevh_rates_new(system, &own)};
     start early = {&fastest, 1};
     size_t every = (size_t)fmin(1e9, fabs((t_end - o->t) / dt) / SAMPLES);
     if (o->balance)
@@ -119,7 +120,7 @@ pace stability_pace(const nevh_system *system, const nevh_integrator *scheme,
     for (size_t k = 0; k < n; k++)
         q[k] = o->q[k], p[k] = o->p[k];
     nevh_run_until(s, o->t, dt, t_end, q, p,
-                   (nevh_observer[]){{pace_observe, &fastest, every},
+                   (nevh_observer[]){{largest_rates_observe, &fastest, every},
                                      {observe_early, &early, 1},
                                      {energy_limit_observe, &e, 1}},
                    3);
@@ -145,10 +146,10 @@ static char *cause_of(const plan *p, const row *r) {
     o.transform = plan_transform(p, r->integrator);
     o.tolerance = r->tolerance;
     o.balance = p->balance;
-    pace fastest = stability_pace(p->system, r->scheme, &o, r->energy.scale,
-                                  r->dt, p->t_end);
+    largest_rates fastest = stability_rates(p->system, r->scheme, &o,
+                                            r->energy.scale, r->dt, p->t_end);
     double limit = nevh_stability_limit(r->scheme);
-    double x = fabs(r->dt) * fastest.turning;
+    double x = fabs(r->dt) * fastest.frequency;
     char *cause = stability_cause(r->scheme, limit, r->dt, &fastest);
     if (cause && p->friction && x <= 1 &&
         !stability_exceeded(r->scheme, limit, x))

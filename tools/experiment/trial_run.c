@@ -2,7 +2,7 @@
 
    The orbit by a method of order 8 that adapts its steps.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pace.h"
+#include "trial_run.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -18,7 +18,7 @@ static const double tolerance = 1e-10;
 typedef struct {
     const plan *plan;
     trial_run *found;
-    pace fastest;
+    largest_rates fastest;
     nevh_field *field;    /* for values */
     nevh_field *gradient; /* the first that is asked for */
     double scale;         /* of the energy */
@@ -100,7 +100,7 @@ static void look(trial *f, int i, double t) {
     size_t n = f->plan->n;
     f->looks++;
     memcpy(f->trial, f->z, 2 * f->plan->n * sizeof *f->z);
-    pace_observe(&f->fastest, 0, t, f->trial, f->trial + n);
+    largest_rates_observe(&f->fastest, 0, t, f->trial, f->trial + n);
     look_for_noise(f, t);
     if (i % EDGE_EVERY == 0 && n <= MOST_DOF)
         look_for_edge(f, t);
@@ -255,10 +255,10 @@ trial_run trial_run_new(const plan *p, bool chaos) {
             judge(&f);
         nevh_stepper_free(f.stepper);
     }
-    found.frequency = f.fastest.turning;
-    found.frequency_at = f.fastest.turning_at;
-    found.pace = f.fastest.frequency;
-    found.pace_at = f.fastest.t;
+    found.frequency = f.fastest.frequency;
+    found.frequency_at = f.fastest.frequency_at;
+    found.rate = f.fastest.rate;
+    found.rate_at = f.fastest.rate_at;
     found.drive = plan_drive(p, &found.driver);
     nevh_rates_free(f.fastest.rates);
     nevh_field_free(f.field);
@@ -373,12 +373,12 @@ void trial_run_words(const plan *p, const trial_run *f, list *notes) {
                    f->frequency, rad, p->per_unit, f->frequency_at, p->unit,
                    p->dt[0] * f->frequency, p->dt[0], p->unit);
     change_notes(p, notes);
-    if (f->pace > f->frequency)
+    if (f->rate > f->frequency)
         list_print(notes,
                    "Fastest growth: small displacements grow at a rate of "
                    "%.3g%s (t = %.4g%s); rate dt = %.3g at dt = %.4g%s",
-                   f->pace, p->per_unit, f->pace_at, p->unit,
-                   p->dt[0] * f->pace, p->dt[0], p->unit);
+                   f->rate, p->per_unit, f->rate_at, p->unit,
+                   p->dt[0] * f->rate, p->dt[0], p->unit);
     outlook_notes(p, f, notes);
     if (isfinite(f->noise))
         list_print(notes,
@@ -393,5 +393,5 @@ void trial_run_words(const plan *p, const trial_run *f, list *notes) {
 const char *trial_run_verdict(const trial_run *f, double limit, double dt) {
     if (f->frequency * dt > limit)
         return "unstable";
-    return fmax(f->pace, f->drive) * dt > 1 ? "not resolved" : NULL;
+    return fmax(f->rate, f->drive) * dt > 1 ? "not resolved" : NULL;
 }

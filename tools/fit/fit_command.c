@@ -277,7 +277,7 @@ static void add_next(const job *j, const options *o, list *words) {
 }
 
 /* The origin of the errors, in words. */
-static char *tell_errors(const job *j) {
+static char *note_errors(const job *j) {
     if (sigma_known(j))
         return text_print("%s", "");
     if (fit_is_rounding(&j->fit, j->fit.chi_square))
@@ -291,7 +291,7 @@ static char *tell_errors(const job *j) {
 
 static void add_words(const job *j, const options *o, list *words) {
     const fitting *f = &j->fit;
-    char *errors = tell_errors(j);
+    char *errors = note_errors(j);
     list_print(
         words,
         "%zu residuals, %zu degrees of freedom: chi-square %.4g, reduced "
@@ -341,7 +341,7 @@ static int print(const job *j, const options *o) {
 }
 
 /* Numbers that have gone far off, or nowhere, are seen from where they are. */
-static void tell_where(const job *j) {
+static void report_divergence(const job *j) {
     const fitting *f = &j->fit;
     list items = {0};
     for (size_t k = 0; k < f->count; k++)
@@ -360,7 +360,7 @@ static void tell_where(const job *j) {
 }
 
 /* Which numbers, and why. */
-static int tell_failure(const job *j) {
+static int report_failure(const job *j) {
     const fitting *f = &j->fit;
     list names = {0};
     for (size_t k = 0; f->undetermined && k < f->count; k++)
@@ -386,7 +386,7 @@ static int tell_failure(const job *j) {
     else if (f->why)
         tool_refuse("%s: no fit: there is no orbit: %s", j->plan.name, f->why);
     else
-        tell_where(j);
+        report_divergence(j);
     free(all);
     list_free(&names);
     return TOOL_FAILED;
@@ -413,7 +413,7 @@ static int fit(const options *o) {
     job j = {0};
     int status = begin(&j, o);
     if (!status && fit_solve(&j.fit))
-        status = tell_failure(&j);
+        status = report_failure(&j);
     if (!status)
         status = print(&j, o);
     clear(&j);

@@ -19,7 +19,7 @@ static const double no_effect = 1e-8; /* what rounding makes is below */
 
 /* Relative changes along a direction: "l by 1 % and g by 1 %", the first being 1;
    of numbers that are 0 there are none, and names alone are told. */
-static void tell_direction(fitting *f, const gsl_vector *along) {
+static void describe_direction(fitting *f, const gsl_vector *along) {
     static const double part_of_it = 0.03;
     double first = 0;
     bool relative = true;
@@ -71,7 +71,7 @@ static bool determined(fitting *f, const gsl_matrix *jacobian) {
         for (size_t k = 0; !good && k < p; k++)
             *gsl_vector_ptr(&along.vector, k) /= length[k];
         if (!good)
-            tell_direction(f, &along.vector);
+            describe_direction(f, &along.vector);
     }
     if (good) {
         free(f->undetermined);

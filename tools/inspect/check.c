@@ -2,7 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
 #include "experiment/conserved.h"
-#include "experiment/pace.h"
+#include "experiment/trial_run.h"
 #include <math.h>
 #include <nevh/extend.h>
 #include <stdio.h>
@@ -76,7 +76,7 @@ static void energy_notes(const plan *p, list *notes) {
     nevh_field_free(field);
 }
 
-static void tell_table(const nevh_integrator *scheme, list *notes) {
+static void note_table(const nevh_integrator *scheme, list *notes) {
     nevh_scheme_facts x;
     char missing[300], kinetic[80] = "";
     if (nevh_integrator_facts(scheme, &x))
@@ -94,13 +94,13 @@ static void tell_table(const nevh_integrator *scheme, list *notes) {
 }
 
 /* Facts that follow from the tables of [integrator NAME]. */
-static void tell_tables(const plan *p, list *notes) {
+static void note_tables(const plan *p, list *notes) {
     const nevh_integrator *scheme;
     for (size_t i = 0; (scheme = nevh_scene_integrator(p->scene, i)); i++) {
         if (i == 0)
             list_add(notes, "The scene's own integrators, by the algebra of "
                             "their tables:");
-        tell_table(scheme, notes);
+        note_table(scheme, notes);
     }
 }
 
@@ -289,7 +289,7 @@ static int check_plan(const options *o, const plan *p) {
         probe_notes(p, &result.before);
         trial_run_words(p, &ahead, &result.before);
         conserved_words(p, &result.before);
-        tell_tables(p, &result.before);
+        note_tables(p, &result.before);
     }
     add_schemes(&(fitting){.plan = p,
                            .ahead = &ahead,

@@ -4,7 +4,7 @@
    Each is switched, and the run repeated by one integrator that fits both ways;
    the others stay as they are.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "experiment/pace.h"
+#include "experiment/trial_run.h"
 #include "impact_private.h"
 #include <math.h>
 #include <stdlib.h>

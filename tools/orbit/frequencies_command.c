@@ -4,7 +4,7 @@
    one by dop853 where H is not smooth, and errors are no powers of the step.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
-#include "experiment/pace.h"
+#include "experiment/trial_run.h"
 #include "experiment/plan.h"
 #include "frequencies_private.h"
 #include <math.h>

@@ -1,6 +1,6 @@
 /* nevh recommend: what an answer is worth: its orbit, and longer runs.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "experiment/pace.h"
+#include "experiment/trial_run.h"
 #include "recommend_private.h"
 #include <math.h>
 #include <stdlib.h>

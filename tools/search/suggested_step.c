@@ -1,6 +1,6 @@
 /* nevh: steps that keep an error of the energy to the end of a run.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "experiment/pace.h"
+#include "experiment/trial_run.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -60,15 +60,15 @@ const nevh__outcome_type nevh__outcome_megno = {
 };
 
 /* The number of outcomes that are indicators of chaos. */
-static size_t count_telling(const nevh_ensemble *e) {
+static size_t count_of_chaos(const nevh_ensemble *e) {
     size_t count = 0;
     for (size_t i = 0; i < e->n_outcomes; i++)
         count += e->outcomes[i].type->of_chaos != NULL;
     return count;
 }
 
-bool nevh__ensemble_tells_chaos(const nevh_ensemble *e) {
-    return count_telling(e) > 0;
+bool nevh__ensemble_has_chaos(const nevh_ensemble *e) {
+    return count_of_chaos(e) > 0;
 }
 
 static bool asks(const nevh_ensemble *e, const nevh__outcome_type *type) {
@@ -79,18 +79,18 @@ static bool asks(const nevh_ensemble *e, const nevh__outcome_type *type) {
 }
 
 static size_t choose_starts(const nevh_ensemble *e) {
-    size_t starts = nevh__padded(e->is.width ? e->is.width : STARTS);
-    while (!e->is.width && starts > NEVH__LANES &&
+    size_t starts = nevh__padded(e->options.width ? e->options.width : STARTS);
+    while (!e->options.width && starts > NEVH__LANES &&
            8 * e->n * starts > MOST_NUMBERS)
         starts /= 2;
     return starts;
 }
 
 static int plan_chaos(nevh_ensemble *e, const nevh_options *options) {
-    nevh_chaos_options o = {.integrator = e->is.integrator,
+    nevh_chaos_options o = {.integrator = e->options.integrator,
                             .options = options,
-                            .t_start = e->is.t_start,
-                            .dt = e->is.dt,
+                            .t_start = e->options.t_start,
+                            .dt = e->options.dt,
                             .starts = choose_starts(e)};
     nevh__chaotic *x = e->chaotic;
     if (!options->q || !options->p)
@@ -116,7 +116,7 @@ int nevh__chaotic_plan(nevh_ensemble *e, const nevh_options *options) {
         x->queue[i].start = x->numbers + lanes + i * each;
         x->queue[i].values = x->queue[i].start + 2 * e->n;
     }
-    x->alone = count_telling(e) == e->n_outcomes && !e->is.stop.value;
+    x->alone = count_of_chaos(e) == e->n_outcomes && !e->options.stop.value;
     x->jobs = (nevh__chaos_jobs){
         .data = e,
         .sparse = !asks(e, &nevh__outcome_megno),
@@ -225,7 +225,7 @@ void nevh__chaotic_finish(nevh_ensemble *e) {
 static bool next_alone(void *ensemble, uint64_t *member, double q[], double p[],
                        double *until) {
     const nevh_ensemble *e = ensemble;
-    *until = e->is.t_end;
+    *until = e->options.t_end;
     return !e->stopped && e->next(e->data, member, q, p);
 }
 

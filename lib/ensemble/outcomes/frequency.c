@@ -11,12 +11,12 @@ typedef nevh_spectral_samples *samples;
 
 static int plan(nevh_ensemble *e, size_t outcome, const nevh_options *o) {
     samples *records = nevh__record_of(e, outcome, 0);
-    if (e->is.integrator->own_time || o->transform)
+    if (e->options.integrator->own_time || o->transform)
         return nevh__fail(&e->report, NEVH_EINVAL,
                           "frequency: it needs samples at equal times, and "
                           "%s chooses times of its own: choose another "
                           "integrator",
-                          e->is.integrator->name);
+                          e->options.integrator->name);
     for (size_t lane = 0; lane < e->width; lane++)
         if (!(records[lane] = nevh_spectral_samples_new(MOST_SAMPLES)))
             return nevh__no_memory(&e->report);

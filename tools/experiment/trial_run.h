@@ -1,7 +1,7 @@
-/* nevh: how fast an orbit is, and what steps bear.
+/* nevh: the rates of an orbit, and the steps that these allow.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef NEVH_PACE_H
-#define NEVH_PACE_H
+#ifndef NEVH_TRIAL_RUN_H
+#define NEVH_TRIAL_RUN_H
 
 #include "row.h"
 #include <nevh/chaos.h>
@@ -11,23 +11,23 @@
    when. */
 typedef struct {
     nevh_rates *rates;
-    double frequency, t;
-    double turning, turning_at; /* of frequencies alone */
-} pace;
-/* A nevh_observe_fn; data is the pace. */
-int pace_observe(void *, size_t step, double t, const double q[],
-                 const double p[]);
-/* The pace of a run up to its end, its failure, or an energy error above `scale`
+    double rate, rate_at;
+    double frequency, frequency_at; /* of frequencies alone */
+} largest_rates;
+/* A nevh_observe_fn; data is the largest_rates. */
+int largest_rates_observe(void *, size_t step, double t, const double q[],
+                          const double p[]);
+/* The rates of a run up to its end, its failure, or an energy error above `scale`
    (0: the scale of the energy); with the options of the run, whose q and p are its
-   start. Its rates are freed. */
-pace stability_pace(const nevh_system *, const nevh_integrator *,
-                    const nevh_options *, double scale, double dt,
-                    double t_end);
+   start. `rates` is freed. */
+largest_rates stability_rates(const nevh_system *, const nevh_integrator *,
+                              const nevh_options *, double scale, double dt,
+                              double t_end);
 /* True if h w = x is beyond that limit of stability of the scheme. */
 bool stability_exceeded(const nevh_integrator *, double limit, double x);
-/* The likely cause of trouble at that pace; NULL where none is known. */
+/* The likely cause of trouble at these rates; NULL where none is known. */
 char *stability_cause(const nevh_integrator *, double limit, double dt,
-                      const pace *);
+                      const largest_rates *);
 /* The same of each unstable row of compare. */
 void stability_words(const plan *, const row rows[], size_t count, list *words);
 
@@ -50,7 +50,7 @@ smoothness smoothness_on_way(const plan *, char **why);
 /* trial_run.c: what a short trial run says of a run. */
 typedef struct {
     double frequency, frequency_at; /* 0: none is known */
-    double pace, pace_at; /* the larger of that and of rates of growth */
+    double rate, rate_at; /* the larger of that and of rates of growth */
     double drive;         /* the largest frequency in t; 0: H reads no time */
     const char *driver;   /* whose */
     bool plane;           /* one degree of freedom, H without time: no chaos */

@@ -1,7 +1,7 @@
 /* nevh: a thread of a sweep.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef NEVH_SCENE_CREW_PRIVATE_H
-#define NEVH_SCENE_CREW_PRIVATE_H
+#ifndef NEVH_SCENE_WORKER_PRIVATE_H
+#define NEVH_SCENE_WORKER_PRIVATE_H
 
 #include "scene/sweep_private.h"
 

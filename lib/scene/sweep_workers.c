@@ -7,7 +7,7 @@
    parameters change nothing but where they start are run by one ensemble, that of
    the scene as it is; so is a member, whichever others there are.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "scene/crew_private.h"
+#include "scene/worker_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

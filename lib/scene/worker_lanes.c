@@ -1,6 +1,6 @@
 /* nevh: members of a sweep whose systems differ in numbers alone, side by side.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "scene/crew_private.h"
+#include "scene/worker_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
