@@ -242,6 +242,15 @@ exits 0 compare $work/stop.nevh --integrators verlet,euler --dt 0.1,0.05 \
 exits 0 compare $work/stop.nevh --integrators dopri5 --format csv
 has '^# 3 of 3 runs stopped'
 lacks ',(failed|refused)'
+# Their state errors are of the whole time, as those of a run that ends there.
+sed 's/^t_end .*/t_end = 1000\nstop = t > 20/' "$srcdir/scenes/oscillator.nevh" \
+    >$work/late.nevh
+exits 0 compare $work/late.nevh --integrators verlet --dt 0.1 --format csv --quiet
+late=$(sed -n 2p $work/out | cut -d, -f 13)
+exits 0 compare oscillator --integrators verlet --dt 0.1 --t-end 20.1 \
+    --format csv --quiet
+awk -F, -v late="$late" 'NR == 2 { good = late > 0.8 * $13 && late < 1.25 * $13 }
+    END { exit !good }' $work/out || fails "has a state error of $late"
 # Neither the reference nor the pilots of equal work go beyond: of 1e6 s of chaos
 # two, of a ball only until it is about to fall through a hole.
 sed 's/^t_end .*/t_end = 1e6\nstop = t > 2/' \

@@ -315,7 +315,7 @@ void row_run(const plan *p, row *r) {
 double row_end(const plan *p, const row *r) {
     double stopped = NAN;
     nevh_stepper *s = row_stepper(p, r, false);
-    if (nevh_stepper_status(s) || plan_run(p, s, r->step, NULL, 0, &stopped))
+    if (nevh_stepper_status(s) || plan_run(p, s, r->dt, NULL, 0, &stopped))
         stopped = p->run->t_start;
     row_stepper_keep(p, r, false, s);
     return isnan(stopped) ? p->t_end : stopped;
