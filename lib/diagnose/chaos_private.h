@@ -106,6 +106,8 @@ void nevh__chaos_fill_up(nevh_chaos *);
 uint64_t nevh__chaos_draw(const nevh_chaos *, size_t number);
 /* chaos_walk.c: hands displacement v of a start to the stepper, or takes it. */
 void nevh__chaos_put(nevh_chaos *, size_t start, size_t v);
+/* Subtracts from b its part along the unit vector a; m numbers each. */
+void nevh__chaos_remove_part(double b[], const double a[], size_t m);
 /* Looks at a start, whose clock->done is set.
    returns  the largest growth of its frame; NAN where a displacement has
             overflowed or vanished */

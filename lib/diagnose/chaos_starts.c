@@ -58,13 +58,8 @@ static void draw_vectors(nevh_chaos *c, size_t start, uint64_t *state) {
         for (size_t k = 0; k < m; k++)
             w[k] = drawn(state);
         for (size_t twice = 0; twice < 2; twice++)
-            for (size_t u = first; u < v; u++) {
-                double dot = 0;
-                for (size_t k = 0; k < m; k++)
-                    dot += w[k] * s->w[u * m + k];
-                for (size_t k = 0; k < m; k++)
-                    w[k] -= dot * s->w[u * m + k];
-            }
+            for (size_t u = first; u < v; u++)
+                nevh__chaos_remove_part(w, s->w + u * m, m);
         for (size_t k = 0; k < m; k++)
             norm += w[k] * w[k];
         for (size_t k = 0; k < m; k++)

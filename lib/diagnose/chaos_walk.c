@@ -64,8 +64,7 @@ static void scale_by(double a[], double x, size_t m) {
         a[k] *= x;
 }
 
-/* Subtracts from b its part along the unit vector a. */
-static void remove_part(double b[], const double a[], size_t m) {
+void nevh__chaos_remove_part(double b[], const double a[], size_t m) {
     double x = dot(a, b, m);
     for (size_t k = 0; k < m; k++)
         b[k] -= x * a[k];
@@ -77,7 +76,7 @@ static double orthonormalise(double all[], size_t v, size_t m) {
     double *w = all + v * m;
     for (int twice = 0; twice < 2; twice++)
         for (size_t u = 0; u < v; u++)
-            remove_part(w, all + u * m, m);
+            nevh__chaos_remove_part(w, all + u * m, m);
     double length = sqrt(dot(w, w, m));
     if (length > 0)
         scale_by(w, 1 / length, m);

@@ -154,8 +154,10 @@ static void fit_pendulum(const trial *b, nevh__exact_solution *e) {
     e->c = atan2l(-C, B);
 }
 
-static bool pendulum_fits(const trial *b, nevh__exact_solution *e) {
+static bool pendulum_fits(const trial *b, nevh__exact_solution *e,
+                          const region *r) {
     residual left = {0};
+    (void)r;
     for (size_t i = 0; i < STATES; i++)
         add_residual(&left, (double)(b->dq[i] - e->b * sinl(b->q[i] - e->c)),
                      (double)e->b * (1 + fabs(b->q[i])));
@@ -223,8 +225,10 @@ static void fit_kepler(const trial *b, nevh__exact_solution *e) {
     }
 }
 
-static bool kepler_fits(const trial *b, nevh__exact_solution *e) {
+static bool kepler_fits(const trial *b, nevh__exact_solution *e,
+                        const region *where) {
     residual left = {0};
+    (void)where;
     for (size_t i = 0; i < STATES; i++) {
         long double r = length(b, b->q + i, STATES), force = e->b / (r * r);
         for (size_t k = 0; k < b->n; k++)
@@ -257,33 +261,24 @@ static region kepler_region(const trial *b, const nevh__exact_solution *e) {
                          (double)sqrtl(2 / e->a * (energy + e->b / low))};
 }
 
+/* Functions for each kind of motion. */
+static const struct {
+    void (*fit)(const trial *, nevh__exact_solution *);
+    bool (*fits)(const trial *, nevh__exact_solution *, const region *);
+    region (*region)(const trial *, const nevh__exact_solution *);
+} kinds[NEVH__EXACT_KINDS] = {
+    [NEVH__PENDULUM] = {fit_pendulum, pendulum_fits, pendulum_region},
+    [NEVH__OSCILLATOR] = {fit_oscillator, oscillator_fits, oscillator_region},
+    [NEVH__KEPLER] = {fit_kepler, kepler_fits, kepler_region}};
+
 static void fit(const trial *b, nevh__exact_solution *e) {
     fit_mass(b, e);
-    if (e->kind == NEVH__PENDULUM)
-        fit_pendulum(b, e);
-    else if (e->kind == NEVH__OSCILLATOR)
-        fit_oscillator(b, e);
-    else
-        fit_kepler(b, e);
-}
-
-static region region_of(const trial *b, const nevh__exact_solution *e) {
-    if (e->kind == NEVH__PENDULUM)
-        return pendulum_region(b, e);
-    if (e->kind == NEVH__OSCILLATOR)
-        return oscillator_region(b, e);
-    return kepler_region(b, e);
+    kinds[e->kind].fit(b, e);
 }
 
 static bool fits(const trial *b, nevh__exact_solution *e, const region *r) {
     e->doubt = b->least_doubt;
-    if (!mass_fits(b, e, r))
-        return false;
-    if (e->kind == NEVH__PENDULUM)
-        return pendulum_fits(b, e);
-    if (e->kind == NEVH__OSCILLATOR)
-        return oscillator_fits(b, e, r);
-    return kepler_fits(b, e);
+    return mass_fits(b, e, r) && kinds[e->kind].fits(b, e, r);
 }
 
 static double longest_step(const trial *b, bool momentum) {
@@ -377,7 +372,7 @@ static bool recognise(trial *b, nevh__exact_solution *e) {
                 refine(b, e, &r);
             return found;
         }
-        r = region_of(b, e);
+        r = kinds[e->kind].region(b, e);
     }
     return false;
 }

@@ -374,28 +374,18 @@ const char *nevh_reference_text(const nevh_reference *r) {
     return r ? r->text : "";
 }
 
-double nevh_reference_error(const nevh_reference *r) {
-    return r ? r->error : NAN;
-}
-
-double nevh_reference_horizon(const nevh_reference *r) {
-    return r ? r->horizon : NAN;
-}
+#define NUMBER(name)                                                           \
+    double nevh_reference_##name(const nevh_reference *r) {                    \
+        return r ? r->name : NAN;                                              \
+    }
+NUMBER(error)
+NUMBER(horizon)
+NUMBER(exponent)
+NUMBER(growth)
+NUMBER(ends)
 
 nevh_reference_end nevh_reference_why(const nevh_reference *r) {
     return r ? r->end : NEVH_REFERENCE_COARSE;
-}
-
-double nevh_reference_exponent(const nevh_reference *r) {
-    return r ? r->exponent : NAN;
-}
-
-double nevh_reference_growth(const nevh_reference *r) {
-    return r ? r->growth : NAN;
-}
-
-double nevh_reference_ends(const nevh_reference *r) {
-    return r ? r->ends : NAN;
 }
 
 double nevh_reference_range(const nevh_reference *r, size_t k) {

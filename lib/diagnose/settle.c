@@ -221,6 +221,31 @@ static bool only_rounding_grows(const nevh_energy_report *own,
            nevh_energy_verdict(own, INFINITY) == NEVH_BOUNDED;
 }
 
+/* The verdict of the longer run, as far as it says something of the run itself. */
+static nevh_verdict judge_longer(const nevh_energy_report *own,
+                                 const longer_run *l, int status) {
+    const nevh_energy_report *longer = &l->report;
+    nevh_verdict verdict = longer->verdict;
+    bool small = own->max <= much_smaller * own->limit;
+    bool beyond = !(own->max <= fmax(own->limit, own->rounding));
+    bool driven = own->theory == NEVH_THEORY_OPEN && !beyond &&
+                  longer->met > grown * own->met;
+    bool grows = verdict == NEVH_RANDOM_WALK || verdict == NEVH_DRIFTS;
+    bool rounded =
+        is_rounding(own) || (driven && only_rounding_grows(own, longer));
+    if (driven && grows && is_carried(longer))
+        verdict = NEVH_UNDECIDED;
+    if (verdict == NEVH_UNDECIDED)
+        verdict = judge_own(own, longer);
+    if (beyond && verdict != NEVH_BOUNDED)
+        verdict = NEVH_UNSTABLE;
+    if ((small || driven) && verdict == NEVH_UNSTABLE)
+        verdict = NEVH_UNDECIDED;
+    if (leaves(own, l, status))
+        verdict = judge_before(own, l);
+    return rounded && verdict == NEVH_UNDECIDED ? NEVH_BOUNDED : verdict;
+}
+
 int nevh_verdict_settle(nevh_stepper *s, nevh_energy *energy,
                         const nevh_judged_run *r, nevh_energy_report *report) {
     bool level = report->verdict == NEVH_BOUNDED;
@@ -243,29 +268,7 @@ int nevh_verdict_settle(nevh_stepper *s, nevh_energy *energy,
     if (status == NEVH_ENOMEM)
         return status;
     end(&l, status);
-    bool small = report->max <= much_smaller * report->limit;
-    bool beyond = !(report->max <= fmax(report->limit, report->rounding));
-    bool driven = report->theory == NEVH_THEORY_OPEN && !beyond &&
-                  l.report.met > grown * report->met;
-    bool grows =
-        l.report.verdict == NEVH_RANDOM_WALK || l.report.verdict == NEVH_DRIFTS;
-    bool rounded = is_rounding(report) ||
-                   (driven && only_rounding_grows(report, &l.report));
-    bool left = leaves(report, &l, status);
-    nevh_verdict before = judge_before(report, &l);
-    nevh_verdict line = judge_own(report, &l.report);
+    l.report.verdict = judge_longer(report, &l, status);
     *report = l.report;
-    if (driven && grows && is_carried(report))
-        report->verdict = NEVH_UNDECIDED;
-    if (report->verdict == NEVH_UNDECIDED)
-        report->verdict = line;
-    if (beyond && report->verdict != NEVH_BOUNDED)
-        report->verdict = NEVH_UNSTABLE;
-    if ((small || driven) && report->verdict == NEVH_UNSTABLE)
-        report->verdict = NEVH_UNDECIDED;
-    if (left)
-        report->verdict = before;
-    if (rounded && report->verdict == NEVH_UNDECIDED)
-        report->verdict = NEVH_BOUNDED;
     return NEVH_OK;
 }
