@@ -80,6 +80,13 @@ void table_number(table *t, double number) {
     add(t, there ? TABLE_NUMBER : TABLE_EMPTY, there ? text : "");
 }
 
+void table_error(table *t, double error) {
+    if (isfinite(error))
+        table_shown(t, "%.1e", error);
+    else
+        table_text(t, NULL);
+}
+
 void table_shown(table *t, const char *format, ...) {
     char text[80];
     va_list arguments;

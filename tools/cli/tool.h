@@ -165,6 +165,7 @@ void table_below(table *);
 void table_text(table *, const char *text);
 void table_number(table *, double number); /* all its digits, */
 void table_round(table *);                 /* or, from here on, ten */
+void table_error(table *, double error);   /* as people read it: two */
 /* A number as it is to be shown, set to the right. */
 __attribute__((format(printf, 2, 3))) void table_shown(table *,
                                                        const char *format, ...);

@@ -27,8 +27,7 @@ static int read_all(members *m, const plan *p, uint64_t count) {
 
 /* The least and the largest energy. */
 static void measure_energies(members *m, const plan *p) {
-    nevh_options values = {.gradient_step = 1e-3, .portable = p->portable};
-    nevh_field *f = nevh_field_new(p->system, &values);
+    nevh_field *f = plan_values(p);
     double t = p->run->t_start, h;
     for (size_t i = 0; i < m->count; i++)
         if (!nevh_field_value(f, 1, &t, m->q + i * m->n, m->p + i * m->n, &h)) {

@@ -111,24 +111,17 @@ void diagnostics_record(table *t, const plan *p, const row *r) {
         table_number(t, r->ran ? r->changes[i] : NAN);
 }
 
-static void show(table *t, bool there, double value) {
-    if (there && isfinite(value))
-        table_shown(t, "%.1e", value);
-    else
-        table_text(t, NULL);
-}
-
 void diagnostics_show(table *t, const plan *p, const row *r) {
     size_t count = nevh_scene_shown_count(p->scene, NEVH_INVARIANTS);
     if (!p->diagnostics)
         return;
-    show(t, r->ran, r->symplecticity_error);
-    show(t, r->ran, r->reversal_error);
+    table_error(t, r->ran ? r->symplecticity_error : NAN);
+    table_error(t, r->ran ? r->reversal_error : NAN);
     if (r->ran)
         table_shown(t, "%.0f", (double)r->counts.newtons);
     else
         table_text(t, NULL);
     shadow_show(t, r);
     for (size_t i = 0; i < count; i++)
-        show(t, r->ran, r->ran ? r->changes[i] : NAN);
+        table_error(t, r->ran ? r->changes[i] : NAN);
 }

@@ -83,11 +83,8 @@ static void name_all(const plan *p, energies *s) {
 }
 
 void plan_energies(plan *p) {
-    nevh_options o = plan_options(p, "central2");
     energies *s = tool_allocate(1, sizeof *s);
-    o.gradient_step = 1e-3; /* values alone are taken */
-    o.gradient_steps = NULL;
-    *s = (energies){.field = nevh_field_new(p->system, &o), .n = p->n};
+    *s = (energies){.field = plan_values(p), .n = p->n};
     find_effects(p, s);
     find_bodies(p, s);
     name_all(p, s);
@@ -176,24 +173,16 @@ void energies_columns(table *t, const plan *p, bool is_table) {
     }
 }
 
-static void put(table *t, bool is_table, double error) {
-    if (is_table && isfinite(error))
-        table_shown(t, "%.1e", error);
-    else if (is_table)
-        table_text(t, NULL);
-    else
-        table_number(t, error);
-}
-
 void energies_put(table *t, const plan *p, const row *r, bool is_table) {
     const energies *s = p->energies;
+    void (*put)(table *, double) = is_table ? table_error : table_number;
     for (size_t i = 0; s && i < s->effects; i++)
-        put(t, is_table, r->energies ? r->energies[i] : NAN);
+        put(t, r->energies ? r->energies[i] : NAN);
     if (!s || !s->bodies)
         return;
     size_t end = s->effects + s->bodies;
     size_t at = r->energies ? worst(r->energies, s->effects, end) : end;
-    put(t, is_table, at < end ? r->energies[at] : NAN);
+    put(t, at < end ? r->energies[at] : NAN);
     table_text(t, at < end ? s->name[at] : NULL);
 }
 

@@ -277,6 +277,26 @@ void plan_free(plan *p) {
     nevh_scene_free(p->scene);
 }
 
+nevh_field *plan_values(const plan *p) {
+    /* With a step for differences, which are not taken, none is looked for. */
+    const nevh_options o = {.gradient_step = 1e-3, .portable = p->portable};
+    return nevh_field_new(p->system, &o);
+}
+
+double plan_longest_dt(const plan *p) {
+    double longest = 0;
+    for (size_t i = 0; i < p->dts; i++)
+        longest = fmax(longest, p->dt[i]);
+    return longest;
+}
+
+double plan_shortest_dt(const plan *p) {
+    double shortest = p->dts ? p->dt[0] : 0;
+    for (size_t i = 1; i < p->dts; i++)
+        shortest = fmin(shortest, p->dt[i]);
+    return shortest;
+}
+
 double *plan_state(const plan *p) {
     double *state = tool_allocate(2 * p->n, sizeof *state);
     memcpy(state, p->q, p->n * sizeof *state);

@@ -56,6 +56,10 @@ char *plan_title(const nevh_scene *, const char *name, const options *);
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int plan_make(plan *, const options *);
 void plan_free(plan *);
+/* A field for values of H; to be freed. */
+nevh_field *plan_values(const plan *);
+double plan_longest_dt(const plan *);  /* 0: no dt is given */
+double plan_shortest_dt(const plan *); /* the same */
 /* A copy of the start: coordinates, then momenta; to be freed. */
 double *plan_state(const plan *);
 nevh_options plan_options(const plan *, const char *gradient);

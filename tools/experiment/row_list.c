@@ -28,9 +28,7 @@ static bool adapts(const plan *p, const char *name) {
 
 /* Adaptive schemes land on the ends of the longest dt. */
 static void add_adaptive(const plan *p, row_list *r, size_t gradient) {
-    double longest = 0;
-    for (size_t j = 0; j < p->dts; j++)
-        longest = fmax(longest, p->dt[j]);
+    double longest = plan_longest_dt(p);
     for (size_t i = 0; i < p->integrators.count; i++)
         for (size_t k = 0; k < p->tolerances; k++)
             if (adapts(p, p->integrators.item[i]))

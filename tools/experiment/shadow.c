@@ -30,13 +30,10 @@ double shadow_error(const row *r) {
 }
 
 void shadow_show(table *t, const row *r) {
-    double error = shadow_error(r);
     if (r->ran && r->shadow.breaks_down)
         table_text(t, "breaks down");
-    else if (isfinite(error))
-        table_shown(t, "%.1e", error);
     else
-        table_text(t, NULL);
+        table_error(t, shadow_error(r));
 }
 
 static bool has_shadow(const row *r) {

@@ -26,13 +26,6 @@ static bool has_arrays(const plan *p) {
     return any;
 }
 
-static double shortest_step(const plan *p) {
-    double shortest = p->dts ? p->dt[0] : 0;
-    for (size_t i = 1; i < p->dts; i++)
-        shortest = fmin(shortest, p->dt[i]);
-    return shortest;
-}
-
 /* Elements of an array are of one kind. */
 static nevh_reference *
 make_reference(const plan *p, const nevh_integrator *scheme, double end) {
@@ -41,7 +34,7 @@ make_reference(const plan *p, const nevh_integrator *scheme, double end) {
         kind[k] = nevh_scene_array(p->scene, k);
     nevh_reference_options o = {.integrator = scheme,
                                 .kind = kind,
-                                .longest = a_few * shortest_step(p),
+                                .longest = a_few * plan_shortest_dt(p),
                                 .finest = !p->run->reference};
     nevh_reference *made =
         nevh_reference_with(p->system, &o, p->run->t_start, end, p->q, p->p);

@@ -15,10 +15,8 @@ static size_t count_jumps(const nevh_timing *timing) {
 
 /* True if the longest steps may pass over a change. */
 static bool is_fast(const plan *p) {
-    double longest = 0, shortest = nevh_timing_shortest(p->timing, NULL, NULL);
-    for (size_t i = 0; i < p->dts; i++)
-        longest = fmax(longest, p->dt[i]);
-    return longest > 2 * shortest;
+    double shortest = nevh_timing_shortest(p->timing, NULL, NULL);
+    return plan_longest_dt(p) > 2 * shortest;
 }
 
 /* Jumps, and what steps pass over, are booked as far as verdicts may follow a

@@ -238,10 +238,8 @@ trial_run trial_run_new(const plan *p, bool chaos) {
     f.z = tool_allocate(2 * p->n, sizeof *f.z);
     f.before = tool_allocate(2 * p->n, sizeof *f.z);
     f.trial = tool_allocate(2 * p->n, sizeof *f.trial);
-    nevh_options values = plan_options(p, "central2");
-    values.gradient_step = 1e-3; /* unused: H alone is asked for */
     o.gradient_step = 0;
-    f.field = nevh_field_new(p->system, &values);
+    f.field = plan_values(p);
     f.gradient = nevh_field_new(p->system, &given);
     f.scale = plan_energy_scale(p);
     f.instances = count_instances(&f);

@@ -65,10 +65,7 @@ static void probe_notes(const plan *p, list *notes) {
 }
 
 static void energy_notes(const plan *p, list *notes) {
-    nevh_options o = plan_options(p, p->gradients.item[0]);
-    o.gradient = nevh_central2;
-    o.gradient_step = 1e-3; /* unused: H alone is asked for */
-    nevh_field *field = nevh_field_new(p->system, &o);
+    nevh_field *field = plan_values(p);
     double h = NAN, t = p->run->t_start;
     nevh_field_value(field, 1, &t, p->q, p->p, &h);
     list_print(notes, "%zu degree%s of freedom, H = %.9g at the start", p->n,

@@ -7,11 +7,10 @@
 #include <string.h>
 
 quantities columns_new(const plan *p) {
-    nevh_options values = {.gradient_step = 1e-3, .portable = p->portable};
     size_t count = nevh_scene_shown_count(p->scene, NEVH_OBSERVABLES);
     quantities c = {.plan = p,
                     .observed = tool_allocate(count, sizeof(double)),
-                    .field = nevh_field_new(p->system, &values)};
+                    .field = plan_values(p)};
     double t = p->run->t_start;
     if (nevh_field_value(c.field, 1, &t, p->q, p->p, &c.start))
         c.start = NAN;

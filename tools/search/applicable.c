@@ -64,14 +64,11 @@ static double share_below(double x) {
 double plan_shorten(plan *p, double budget) {
     enum { RUNS = 8 }; /* of the kind that is measured, an integrator */
     double whole = p->t_end, span = whole - p->run->t_start;
-    double dt = p->dt[0];
-    for (size_t i = 1; i < p->dts; i++)
-        dt = fmin(dt, p->dt[i]);
     nevh_counts step = {.gradients = 1};
     double runs = (double)(RUNS * p->integrators.count);
     double share = budget / 6 /
                    (runs * nevh_counts_seconds(&step, p->n, nevh_verlet, 2, 1) *
-                    span / dt);
+                    span / plan_shortest_dt(p));
     if (share < 1)
         p->t_end = p->run->t_start + share_below(share) * span;
     return whole;

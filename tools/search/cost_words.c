@@ -198,10 +198,8 @@ static bool conserves_energy(const costs *c, const study *l) {
 static void name_words(const costs *c, list *words, const char *format,
                        bool (*holds)(const costs *, const study *)) {
     char *names = names_where(c, holds);
-    char *text = text_print("%s: %s", names, format);
     if (*names)
-        list_add(words, text);
-    free(text);
+        list_print(words, "%s: %s", names, format);
     free(names);
 }
 

@@ -21,14 +21,13 @@ static int record(void *data, size_t step, double t, const double q[],
 }
 
 static orbit_states states_new(const plan *p, size_t steps) {
-    nevh_options values = {.gradient_step = 1e-3, .portable = p->portable};
     return (orbit_states){.n = p->n,
                           .every = steps / (STATES - 1) + 1,
                           .t = tool_allocate(STATES, sizeof(double)),
                           .q = tool_allocate(STATES * p->n, sizeof(double)),
                           .p = tool_allocate(STATES * p->n, sizeof(double)),
                           .h = tool_allocate(STATES, sizeof(double)),
-                          .field = nevh_field_new(p->system, &values)};
+                          .field = plan_values(p)};
 }
 
 static void states_free(orbit_states *o) {

@@ -12,13 +12,6 @@ static const double one_row =
 static const double one_scheme = 0.16;
 static const double most_seconds = 60;
 
-double search_longest_dt(const plan *p) {
-    double longest = 0;
-    for (size_t i = 0; i < p->dts; i++)
-        longest = fmax(longest, p->dt[i]);
-    return longest;
-}
-
 static int coarse_to_fine(const void *a, const void *b) {
     double x = *(const double *)a, y = *(const double *)b;
     return (x < y) - (x > y);
@@ -47,7 +40,7 @@ search search_begin(const plan *p, const options *o, double budget) {
                 .seconds = o->search.budget > 0 ? budget : most_seconds,
                 .started = cpu_seconds(),
                 .compiled = seconds_of_children(),
-                .landing = grid_dt(grid_dt_place(8 * search_longest_dt(p)))};
+                .landing = grid_dt(grid_dt_place(8 * plan_longest_dt(p)))};
     s.plan.screening = true;
     s.plan.by_state = o->search.by || o->observable;
     s.plan.work_limit =
@@ -55,7 +48,7 @@ search search_begin(const plan *p, const options *o, double budget) {
     if (o->dt.count) {
         s.dt = ordered(p->dt, s.dts = p->dts);
         s.tolerance = ordered(p->tolerance, s.tolerances = p->tolerances);
-        s.landing = search_longest_dt(p);
+        s.landing = plan_longest_dt(p);
     }
     return s;
 }

@@ -177,7 +177,7 @@ static bool keeps_at_any_step(search *s, const study *l) {
 /* The scene's dt is one for schemes of order 2 to 4. */
 static int first_place(const search *s, const study *l) {
     int order = nevh_integrator_order(l->scheme);
-    int k = grid_dt_place(search_longest_dt(&s->plan));
+    int k = grid_dt_place(plan_longest_dt(&s->plan));
     for (int coarser = order >= 8 ? 2 : order >= 6; coarser; coarser--)
         if (study_fits_steps(s, k - GRID_STRIDE))
             k -= GRID_STRIDE;

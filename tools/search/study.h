@@ -72,7 +72,6 @@ bool search_may_time(const search *);
 /* Says on stderr, after a second, what is running. */
 void search_progress(const search *, const row *);
 void search_end(search *);
-double search_longest_dt(const plan *);
 
 /* study.c: one integrator and gradient at many steps. */
 study study_new(const plan *, const char *integrator, const char *gradient);
