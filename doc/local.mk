@@ -79,9 +79,11 @@ EXTRA_DIST += doc/nevh.h2m doc/nevh.3.head doc/reference.awk doc/figures.sh doc/
 	doc/nevh-cost.txt doc/energy.svg
 
 # Worksheets: every number is measured again.
-EXTRA_DIST += doc/sheets/sheets.texi doc/sheets/answers.texi doc/sheets/numbers.texi \
-	doc/sheets/numbers.list \
-	doc/sheets/quartic.nevh doc/sheets/schemes.nevh doc/sheets/sheets.sh
+EXTRA_DIST += doc/sheets/answers.texi doc/sheets/numbers.texi doc/sheets/sheets.sh
+# What nevh sheet and nevh mark read.
+sheetsdir = $(pkgdatadir)/sheets
+dist_sheets_DATA = doc/sheets/sheets.texi doc/sheets/numbers.list doc/sheets/tasks.list \
+	doc/sheets/quartic.nevh doc/sheets/schemes.nevh doc/sheets/sheets.css doc/sheets/check.js
 sheets_html = doc/nevh-sheets.html doc/nevh-answers.html
 CLEANFILES += $(sheets_html) doc/nevh-sheets.pdf doc/nevh-answers.pdf
 run_sheets = $(SHELL) $(srcdir)/doc/sheets/sheets.sh $(srcdir) \
@@ -94,7 +96,8 @@ sheets: all $(sheets_html)
 	      -o doc/nevh-$$name.pdf $(srcdir)/doc/sheets/$$name.texi || exit 1; \
 	  done; \
 	else echo "There is no TeX: the sheets are $(sheets_html) alone."; fi
-sheet_to_html = $(MKDIR_P) doc && $(MAKEINFO) --html --no-split -I $(srcdir)/doc/sheets -o $@
+sheet_to_html = $(MKDIR_P) doc && $(MAKEINFO) --html --no-split \
+	--css-include=$(srcdir)/doc/sheets/sheets.css -I $(srcdir)/doc/sheets -o $@
 doc/nevh-sheets.html: doc/sheets/sheets.texi doc/sheets/quartic.nevh doc/sheets/schemes.nevh
 	$(AM_V_GEN)$(sheet_to_html) $(srcdir)/doc/sheets/sheets.texi
 doc/nevh-answers.html: doc/sheets/answers.texi doc/sheets/numbers.texi

@@ -14,6 +14,7 @@ python_package = \
 	python/nevh/__init__.py \
 	python/nevh/__init__.pyi \
 	python/nevh/_arrays.py \
+	python/nevh/_classroom.py \
 	python/nevh/_command_line.py \
 	python/nevh/_commands.py \
 	python/nevh/_events.py \
@@ -28,11 +29,14 @@ python_package = \
 	python/nevh/_progress.py \
 	python/nevh/_run.py \
 	python/nevh/_scene.py \
+	python/nevh/_sheet_export.py \
+	python/nevh/_sheet_text.py \
 	python/nevh/_solve.py \
 	python/nevh/_sweep.py \
 	python/nevh/_symbol.py \
 	python/nevh/_symbol_arrays.py \
 	python/nevh/_table.py \
+	python/nevh/_tasks.py \
 	python/nevh/_trace.py \
 	python/nevh/_traced.py \
 	python/nevh/_twin.py \

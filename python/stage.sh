@@ -31,6 +31,9 @@ ldd "$folder.new/lib/libnevh.so.0" "$folder.new/bin/nevh" |
 ${STRIP:-strip} -S "$folder.new"/lib/*.so* "$folder.new/bin/nevh" 2>/dev/null || :
 chmod 644 "$folder.new"/lib/*
 cp "$srcdir"/scenes/*.nevh "$srcdir"/scenes/*.csv "$folder.new/share/nevh/scenes/"
+mkdir -p "$folder.new/share/nevh/sheets"
+cp "$srcdir"/doc/sheets/sheets.texi "$srcdir"/doc/sheets/sheets.css "$srcdir"/doc/sheets/*.list "$srcdir"/doc/sheets/check.js \
+    "$srcdir"/doc/sheets/*.nevh "$folder.new/share/nevh/sheets/"
 cp "$srcdir"/scenes/hard/*.nevh "$folder.new/share/nevh/scenes/hard/"
 # The kit of nevh page, where it was made.
 for kit in web/kit.html "$srcdir/web/kit.html"; do

@@ -200,6 +200,7 @@ dist_check_SCRIPTS = \
 	tests/build/paper.sh \
 	tests/tool/nevh.sh \
 	tests/tool/nevh_scenes.sh \
+	tests/tool/nevh_sheet.sh \
 	tests/tool/nevh_help.sh \
 	tests/tool/nevh_commands.sh \
 	tests/tool/nevh_start.sh \

@@ -10,6 +10,8 @@ const command *const commands[] = {COMMANDS(COMMAND_OF) NULL};
 const command *command_find(const char *name) {
     list names = {0};
     size_t i = 0;
+    if (strcmp(name, "sheets") == 0) /* as one says for all of them */
+        name = "sheet";
     for (; commands[i] && strcmp(name, commands[i]->name) != 0; i++)
         list_add(&names, commands[i]->name);
     if (!commands[i])

@@ -19,6 +19,7 @@ tools_nevh_SOURCES = \
 	tools/cli/output.c \
 	tools/cli/outputs.c \
 	tools/cli/scenes.c \
+	tools/cli/sheet.c \
 	tools/experiment/plan.c \
 	tools/experiment/stop.c \
 	tools/experiment/row.c \
@@ -170,7 +171,8 @@ tools_nevh_SOURCES = \
 	tools/orbit/flow.c \
 	tools/search/cost_plot.c
 tools_nevh_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE \
-	-DNEVH_SCENES='"$(scenesdir)"' -DNEVH_PAGE='"$(pkgdatadir)/page.html"'
+	-DNEVH_SCENES='"$(scenesdir)"' -DNEVH_PAGE='"$(pkgdatadir)/page.html"' \
+	-DNEVH_PACKAGE='"$(pythondir)"'
 tools_nevh_LDADD = libnevh.la $(GSL_LIBS)
 
 # nevh with ranks of MPI, which mpirun nevh sweep becomes.

@@ -31,7 +31,22 @@ measure() { # COMMAND AWK FORMAT
         head -n 1
 }
 
-grep -v '^#' "$sheets/numbers.list" | grep . >list
+# A file with the quantities of its sheets, which sheets.texi sets.
+expanded() {
+    awk '
+        /^@node Sheet / { sheet = $3 }
+        /^# [0-9]+: / { sheet = $2 + 0 }
+        NR == FNR { if ($1 == "@set") {
+                value = $0; sub(/^@set [^ ]+ /, "", value); set[sheet, $2] = value }
+            next }
+        { made = ""
+            while (match($0, /@value[{][A-Za-z-]+[}]/)) {
+                name = substr($0, RSTART + 7, RLENGTH - 8)
+                made = made substr($0, 1, RSTART - 1) set[sheet, name]
+                $0 = substr($0, RSTART + RLENGTH) }
+            print made $0 }' "$sheets/sheets.texi" "$1"
+}
+expanded "$sheets/numbers.list" | grep -v '^#' | grep . >list
 numbers=0
 while IFS='|' read -r key tolerance format command program; do
     number=$(measure "$command" "$program") && test -n "$number" ||
@@ -57,7 +72,7 @@ cat numbers
 grep -q : numbers && status=1
 
 # Each number that is shown is one of the list.
-cat "$sheets/sheets.texi" "$sheets/answers.texi" | tr '@' '\n' |
+tr '@' '\n' <"$sheets/answers.texi" |
     sed -n 's/^value{\([a-z-]*\)}.*/\1/p' | sort -u |
     while read -r key; do
         cut -d'|' -f1 list | grep -qx -e "$key" || echo "$key is shown, and not measured"
@@ -69,10 +84,10 @@ done >unknown
 test -s unknown && { cat unknown; status=1; }
 
 # All that stands in examples and begins with nevh is a command that runs.
-awk '/^@example/ { in_it = 1 } /^@end example/ { in_it = 0 }
+expanded "$sheets/sheets.texi" | awk '/^@example/ { in_it = 1 } /^@end example/ { in_it = 0 }
     in_it && /^(nevh |    --)/ {
         more = sub(/ \\$/, ""); printf "%s%s", $0, more ? " " : "\n"
-    }' "$sheets/sheets.texi" >commands
+    }' >commands
 commands=0
 while read -r command; do
     commands=$((commands + 1))

@@ -33,7 +33,8 @@ _no_options = ("format", "quiet", "help", "version")
 _files_of_tables = ("output", "resume")  # a Table has to_csv
 _of_scenes = ("with", "without", "set", "start")
 _in_order = ("integrators", "dt", "t-end")
-_not_functions = ("sweep", "help")  # sweep fills arrays by the library itself
+# sweep fills arrays by the library itself; sheets are made by this package.
+_not_functions = ("sweep", "help", "sheet", "mark")
 
 
 def command() -> str:
@@ -445,5 +446,6 @@ def gradients(scene: Any = None, *arguments: Any, **named: Any) -> Any:
 
 
 def main():
-    """The command nevh."""
+    """The command nevh, which runs this Python for worksheets."""
+    os.environ.setdefault("PYTHON", sys.executable)
     os.execv(command(), ["nevh"] + sys.argv[1:])

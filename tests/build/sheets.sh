@@ -24,10 +24,10 @@ fi
 
 # A number that is wrong is found.
 cp "$srcdir"/doc/sheets/* $work/doc/sheets/
-grep '^rk-twenty|' "$srcdir/doc/sheets/numbers.list" >$work/doc/sheets/numbers.list
+grep -e '^# 1:' -e '^rk-twenty|' "$srcdir/doc/sheets/numbers.list" >$work/doc/sheets/numbers.list
 sed 's/^\(@set rk-twenty\) .*/\1 1.6e-04/' "$srcdir/doc/sheets/numbers.texi" \
     >$work/doc/sheets/numbers.texi
-printf '@example\nnevh list scenes\n@end example\n' >$work/doc/sheets/sheets.texi
+printf '@node Sheet 1\n@set pendulum pendulum\n@set dt 0.05\n@example\nnevh list scenes\n@end example\n' >$work/doc/sheets/sheets.texi
 printf '@value{rk-twenty} and @value{first-p}; @value{rk-twenty}\n' \
     >$work/doc/sheets/answers.texi
 ln -s "$(cd "$srcdir" && pwd)/scenes" $work/scenes

@@ -59,12 +59,17 @@ needs() {
     help) echo run ;;
     list) echo scenes ;;
     new) rm -f $work/made.nevh && echo $work/made.nevh ;;
+    mark)
+        printf 'name,task,answer\nAda,8.1,19\n' >$work/answers.csv
+        echo $work/answers.csv
+        ;;
     hard) echo --integrators rk4 --gradient exact ;;
     esac
 }
 missing_here() { # COMMAND: what it needs that is not installed
     case $1 in
     page) "$nevh" page $work/good.nevh -o $work/kit.html 2>&1 | grep -q 'without the live page' ;;
+    sheet | mark) ! "$nevh" sheet >/dev/null 2>&1 ;; # Python
     *) false ;;
     esac
 }

@@ -38,7 +38,8 @@ for one in $commands; do
         sed -e :a -e '/\\$/N; s/\\\n *//; ta' | sed -n 's/^  nevh //p' >$work/examples
     test "$(wc -l <$work/examples)" = 2 || fails "help $one has no two examples"
     case $one in
-    page | hard) continue ;; # a kit, half a minute
+    page | hard | mark) continue ;; # a kit, half a minute, a file of answers
+    sheet) "$nevh" sheet >/dev/null 2>&1 || continue ;; # Python
     esac
     while read -r example; do
         (cd $work && eval "NEVH_SCENES='$scenes' \"$absolute\" $example") >$work/out 2>$work/err </dev/null

@@ -27,6 +27,8 @@
     X(page)                                                                    \
     X(hard)                                                                    \
     X(new)                                                                     \
+    X(sheet)                                                                   \
+    X(mark)                                                                    \
     X(list)                                                                    \
     X(help)
 

@@ -110,6 +110,21 @@ char *data_file(const char *name) {
     return text_print("%s", name);
 }
 
+char *package_folder(void) {
+    char *beside = path_beside("scenes/../python", "python");
+    char *found = beside ? realpath(beside, NULL) : NULL; /* scenes is a link */
+    free(beside);
+    return found ? found : text_print("%s", NEVH_PACKAGE);
+}
+
+char *library_file(void) {
+    char *beside = path_beside(".libs/libnevh.so.0", "../../lib/libnevh.so.0");
+    if (beside && is_file(beside))
+        return beside;
+    free(beside);
+    return NULL;
+}
+
 char *page_kit(void) {
     char *beside = path_beside("web/kit.html", "page.html");
     if (beside && is_file(beside))

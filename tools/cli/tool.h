@@ -252,6 +252,11 @@ typedef struct {
     size_t task, tasks; /* part `task` of `tasks` */
     double stop_after;  /* seconds */
     bool retry, join;
+    struct { /* of sheet and mark; names: one, or a file of them */
+        const char *names, *key;
+        unsigned form; /* of the words of --as */
+        bool answers;
+    } sheet;
     bool no_steps; /* the command takes no dt; it ends with the last of `at` */
     bool help, version;
 } options;
@@ -392,5 +397,9 @@ char *data_file(const char *name);
 /* The live page without a scene, beside this program or where it was configured
    to be; to be freed.  Whether it is there is not known. */
 char *page_kit(void);
+/* The folder of the package for Python, and the library where it stands beside
+   this program, or NULL; to be freed. */
+char *package_folder(void);
+char *library_file(void);
 
 #endif
