@@ -105,7 +105,7 @@ def compare(scene: Any, integrators: str | Sequence[str] | None = None, dt: floa
         "work"] | None = None, diagnostics: bool | None = None, portable: bool | None =
         None, native: Literal["auto", "always", "never"] | None = None, no_cache: bool |
         None = None, plot: str | PathLike[str] | None = None, plot_kind: Literal["phase",
-        "energy", "configuration", "time", "order", "animation"] | None = None,
+        "time", "energy", "configuration", "animation", "order"] | None = None,
         keep_plot_script: str | PathLike[str] | None = None, allow_code: bool | None =
         None, coordinates: Sequence[str] | None = None, options: Sequence[str] =
         ()) -> Table: ...
@@ -119,7 +119,7 @@ def cost(scene: Any, integrators: str | Sequence[str] | None = None, dt: float |
         repeat: int | None = None, budget: float | None = None, portable: bool | None =
         None, native: Literal["auto", "always", "never"] | None = None, no_cache: bool |
         None = None, plot: str | PathLike[str] | None = None, plot_kind: Literal["phase",
-        "energy", "configuration", "time", "order", "animation"] | None = None,
+        "time", "energy", "configuration", "animation", "order"] | None = None,
         keep_plot_script: str | PathLike[str] | None = None, allow_code: bool | None =
         None, coordinates: Sequence[str] | None = None, options: Sequence[str] =
         ()) -> Table: ...
@@ -244,8 +244,8 @@ def run(scene: Any, integrators: str | Sequence[str] | None = None, dt: float | 
         PathLike[str] | Mapping[str, Any] | None = None, transform: float | str | None =
         None, portable: bool | None = None, native: Literal["auto", "always", "never"] |
         None = None, no_cache: bool | None = None, plot: str | PathLike[str] | None =
-        None, plot_kind: Literal["phase", "energy", "configuration", "time", "order",
-        "animation"] | None = None, columns: str | Sequence[str] | None = None,
+        None, plot_kind: Literal["phase", "time", "energy", "configuration", "animation",
+        "order"] | None = None, columns: str | Sequence[str] | None = None,
         keep_plot_script: str | PathLike[str] | None = None, allow_code: bool | None =
         None, coordinates: Sequence[str] | None = None, options: Sequence[str] =
         ()) -> Table: ...
