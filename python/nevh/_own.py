@@ -320,7 +320,8 @@ def run_steps(mine, subject, gradient, gradient_step, y, t0, h, times):
         hamiltonian_evals=0, status=status, message=message, success=not status,
         energy_error=report.max, energy_drift=report.drift, energy_scale=report.scale,
         verdict=verdicts[report.verdict], t_reached=times[len(states) - 1],
-        y_reached=np.array(states[-1]), sol=None, rms_energy_error=report.rms,
+        y_reached=np.array(states[-1]), sol=None, t_events=None,
+        y_events=None, rms_energy_error=report.rms,
         final_energy_error=report.final, seconds=time.process_time() - started,
         method=mine.name, dt=abs(h), tolerance=0.0, gradient=gradient,
         names=subject.scene.names if subject.scene else None)

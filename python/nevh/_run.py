@@ -247,7 +247,8 @@ def _run_plan(plan, t0, t_end, h, times, y, observe, every, interrupt=None):
         energy_drift=report.drift, energy_scale=report.scale,
         t_reached=t_end if not ran else _lib.stepper_time(plan.stepper)
         if _lib.stepper_taken(plan.stepper) else t0,
-        y_reached=y[0].copy() if np is not None else list(y[0]), sol=None)
+        y_reached=y[0].copy() if np is not None else list(y[0]), sol=None,
+        t_events=None, y_events=None)
     _judge(result, plan, report, status, (t0, h, t_end, start))
     return status, result
 

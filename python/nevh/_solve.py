@@ -322,7 +322,7 @@ def _solve_members(H, t_span, y0, given):
         energy_drift=np.array([run.energy_drift for run in runs]),
         t_reached=np.array([run.t_reached for run in runs]),
         y_reached=np.stack([run.y_reached for run in runs], 1), members=runs, sol=None,
-        **same)
+        t_events=None, y_events=None, **same)
     result._settle = lambda: np.array([run.verdict for run in runs])
     return result
 

@@ -804,6 +804,14 @@ def pendulum_of_pieces(t, y):
     return y[1]**2/2 - (math.cos(y[0]) if y[0] < 9 else 0)
 
 
+def test_results_have_what_those_of_scipy_have():
+    orbit = nevh.solve(PENDULUM, (0, 1), [1, 0])
+    assert orbit.t_events is None and orbit.y_events is None and orbit.sol is None
+    needs("SciPy")
+    other = scipy_integrate.solve_ivp(lambda t, y: [y[1], -math.sin(y[0])], (0, 1), [1, 0])
+    assert set(other) - set(orbit) == {"njev", "nlu"}
+
+
 def test_progress_is_shown_to_persons_alone():
     program = """if True:
         import nevh, sys
