@@ -108,7 +108,7 @@ function nevhEngine(send) {
       x.page_race(page, slot, scheme, gradient, r.h, r.tolerance || 1e-9,
         r.width || 1, r.k || 0, dq, dp));
 
-  // What runs will reach in some steps, or in as many as a moment lets them: [least, largest] of each number of the state
+  // What runs will reach in some steps, or in as many as a second lets them: [least, largest] of each number of the state
   // and of what is drawn of it, and the largest error.
   function ahead({ list, steps, start }) {
     if (start) numbers(x.page_start(page), 2 * n).set(start);
@@ -118,7 +118,7 @@ function nevhEngine(send) {
       if (enter(AHEAD, r)) return null;
       const began = performance.now();
       let low = null, high = null, error = 0, failed = 0, done = 0;
-      for (; done < most && !failed && performance.now() - began < 150; done += every) {
+      for (; done < most && !failed && performance.now() - began < 1000; done += every) {
         const row = state(AHEAD, 1), seen = observed(row);
         low = low ? low.map((v, i) => Math.min(v, seen[i])) : [...seen];
         high = high ? high.map((v, i) => Math.max(v, seen[i])) : [...seen];
