@@ -145,6 +145,7 @@ tools_nevh_SOURCES = \
 	tools/orbit/phase_plot.c \
 	tools/orbit/configuration_plot.c \
 	tools/orbit/time_plot.c \
+	tools/orbit/run_energy_plot.c \
 	tools/orbit/run_plot.c \
 	tools/orbit/section_plot.c \
 	tools/orbit/portrait.h \
