@@ -127,6 +127,17 @@ NEVH_API double nevh_reference_ends(const nevh_reference *);
             the answer is NAN */
 NEVH_API double nevh_solution_ends(const nevh_system *, double t0, double t1,
                                    const double q[], const double p[]);
+/* Tests by Taylor series whether H is smooth on the way of a solution: they end where
+   an operation of a formula has a kink, a jump, or the edge of its domain.
+   why      out, of `room` characters, may be NULL: the operation, its effect and
+            the time; "" where there is none
+   cost     at most 5000 series, and fewer where n > 14
+   returns  NEVH_OK: it is, as far as was seen, or up to the end of the solution;
+            NEVH_EDOM: it is not; NEVH_ESTRUCT where there are no series; NEVH_EFAILED
+            where they get too short for another reason; NEVH_ENOMEM */
+NEVH_API int nevh_solution_smooth(const nevh_system *, double t0, double t1,
+                                  const double q[], const double p[],
+                                  char why[], size_t room);
 
 /* The state at a time between t0 and t1.
    q, p     out, n each

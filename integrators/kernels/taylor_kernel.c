@@ -101,6 +101,16 @@ static bool plan_series(const nevh_work *w, taylor_plan *plan) {
     return plan->first && plan->first_rows;
 }
 
+/* Runs go on behind kinks, as series do not. */
+static int refuse_kink(nevh_work *w, const nevh__edge *e) {
+    return nevh_work_fail(
+        w, NEVH_ESTRUCT,
+        "effect \"%s\" has no Taylor series: its function "
+        "%s(...) is not analytic, so that its derivatives say "
+        "nothing about it elsewhere",
+        e->effect ? e->effect : "H", nevh__operation_name(e->function));
+}
+
 static int plan(nevh_work *w) {
     double tolerance = w->options->tolerance;
     if (!(tolerance > 0))
@@ -119,6 +129,9 @@ static int plan(nevh_work *w) {
         nevh__recurrence_new(w->system, w->friction, false, &report);
     if (!plan->recurrence)
         return nevh_work_fail(w, report.status, "%s", report.text);
+    size_t kink = nevh__domain_kink(plan->recurrence);
+    if (kink != SIZE_MAX)
+        return refuse_kink(w, &plan->recurrence->edges[kink]);
     int status = nevh_work_find_scale(w);
     if (status)
         return status;

@@ -110,17 +110,23 @@
       .lanewise = true, .edge = "a a * b b * +", .touches = true,              \
       .at_edge = "hypot(...), both of whose arguments reach 0,")               \
     X(KINK, ABS, "abs", 1, NEVH__L(fabs)(a), NEVH__G(nevh__sign(a)), 0,        \
-      .by_a = {"a sign"}, .as = "a a sign *", .lanewise = true, .exact = true) \
+      .by_a = {"a sign"}, .as = "a a sign *", .lanewise = true, .exact = true, \
+      .edge = "a", .at_edge = "abs(...), whose argument reaches 0,")           \
     X(KINK, MIN, "min", 2, NEVH__H(real_min)(a, b), NEVH__G(a < b),            \
       NEVH__G(!(a < b)),                                                       \
       .by_a = {"b a - sign 0 max"}, .by_b = {"1 b a - sign 0 max -"},          \
-      .as = "a b + 0.5 * a b - abs 0.5 * -", .lanewise = true, .exact = true)  \
+      .as = "a b - b a - sign 0.5 * 0.5 + * b +", .lanewise = true,            \
+      .exact = true, .edge = "a b -",                                          \
+      .at_edge = "min(...), whose arguments become equal,")                    \
     X(KINK, MAX, "max", 2, NEVH__H(real_max)(a, b), NEVH__G(a > b),            \
       NEVH__G(!(a > b)),                                                       \
       .by_a = {"a b - sign 0 max"}, .by_b = {"1 a b - sign 0 max -"},          \
-      .as = "a b + 0.5 * a b - abs 0.5 * +", .lanewise = true, .exact = true)  \
+      .as = "a b - a b - sign 0.5 * 0.5 + * b +", .lanewise = true,            \
+      .exact = true, .edge = "a b -",                                          \
+      .at_edge = "max(...), whose arguments become equal,")                    \
     X(KINK, SIGN, "sign", 1, NEVH__H(sign)(a), NEVH__G(0), 0,                  \
-      .by_a = {"0"}, .lanewise = true, .exact = true)                          \
+      .by_a = {"0"}, .lanewise = true, .exact = true,                          \
+      .edge = "a", .at_edge = "sign(...), whose argument reaches 0,")          \
     X(KINK, MOD, "mod", 2, NEVH__H(mod)(a, b), g, NEVH__G(-rint((a - y) / b)), \
       .by_a = {"1"}, .by_b = {"a b / floor neg"},                              \
       .as = "a b a b / floor * -", .lanewise = true, .usage = "(a, b)")        \

@@ -111,7 +111,7 @@ void nevh__tape_abandon(nevh__tape_builder *);
    The same operation on the same nodes is the same node, for a + b and b + a
    too.  Numbers are folded.  Rewritten is only what changes no result, be it
    of rounding or a zero's sign: x*1, x/1, x^1, x - 0, x + (-y), -(-x), x*(-1),
-   (-x)*(-y), x/2^k and the like; not 0*x, which is not 0 where x is infinite.
+   (-x)*(-y), x/2^k, abs(x)^2 and the like; not 0*x, which is not 0 where x is infinite.
    Powers that are numbers are an exception: x^n with a whole |n| <= 8 is
    multiplied out (|n| - 1 roundings of half an ulp each, and one where n < 0),
    x^(n + 1/2) with |n + 1/2| < 5 is the same times sqrt(x), so that there a

@@ -45,6 +45,13 @@ static int commutative(nevh__tape_builder *b, nevh__tape_operation of, int x,
     return x < y ? operation(b, of, x, y) : operation(b, of, y, x);
 }
 
+/* The operand that an even function may take instead: z of abs(z). */
+static int without_sign(const nevh__tape_builder *b, int node) {
+    const nevh__tape_node *n = &b->nodes[node];
+    bool is_size = n->kind == NEVH__SLOT && n->operation == NEVH__ABS;
+    return is_size ? n->a : node;
+}
+
 static int add(nevh__tape_builder *b, int x, int y) {
     int z;
     if (is(b, y, -0.0))
@@ -100,8 +107,10 @@ static int multiply(nevh__tape_builder *b, int x, int y) {
         return multiply_number(b, y, c, x);
     if (is_negated(b, x, &z) && is_negated(b, y, &w))
         return nevh__tape_apply(b, NEVH__MULTIPLY, z, w);
-    if (x == y)
+    if (x == y) {
+        x = without_sign(b, x);
         return operation(b, NEVH__SQUARE, x, x);
+    }
     return commutative(b, NEVH__MULTIPLY, x, y);
 }
 
@@ -152,6 +161,8 @@ static int power(nevh__tape_builder *b, int x, int y) {
     double c;
     if (is(b, x, 1))
         return x;
+    if (nevh__tape_is_number(b, y, &c) && fmod(c, 2) == 0)
+        x = without_sign(b, x);
     if (!nevh__tape_is_number(b, y, &c) || !is_expandable(c))
         return operation(b, NEVH__POWER, x, y);
     if (c == 0)
@@ -177,6 +188,13 @@ static int rewritten(nevh__tape_builder *b, nevh__tape_operation of, int x,
         return power(b, x, y);
     case NEVH__NEGATE:
         return negate(b, x);
+    case NEVH__ABS:
+    case NEVH__COS:
+    case NEVH__COSH:
+        x = without_sign(b, x);
+        return operation(b, of, x, x);
+    case NEVH__HYPOT:
+        return operation(b, of, without_sign(b, x), without_sign(b, y));
     default:
         return operation(b, of, x, y);
     }

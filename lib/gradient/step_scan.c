@@ -1,5 +1,6 @@
 /* nevh: the difference step of each variable, by a scan of powers of two.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "expression/tape_private.h"
 #include "gradient/block_private.h"
 #include "gradient/step_selection_private.h"
 #include <float.h>
@@ -175,17 +176,30 @@ static bool blind(const estimate *best) {
     return !(worst(best) < INFINITY) || best->size == 0;
 }
 
+/* Level of the step that differences take of a smooth function. */
+static int usual_level(int order) {
+    return (int)round(log2(DBL_EPSILON) / (order + 1)) - LOWEST;
+}
+
+/* True if kinks are operations of the term's formula: samples are seldom as near to
+   one as long steps reach. */
+static bool has_kinks(const nevh__planned *term) {
+    const nevh_term *decl = &term->term->decl;
+    return decl->block == nevh__tape_block && nevh__tape_breaks(decl->params);
+}
+
 static nevh__step choose(const nevh_gradient *g, const scan_result *l,
-                         double unit) {
+                         double unit, bool kinks) {
     int two = best_level(l, l->two, 2);
+    if (kinks && two > usual_level(2))
+        two = usual_level(2);
     int full = best_level(l, l->full, g->order);
     const estimate *best = &l->full[full];
     if (blind(best))
-        return (nevh__step){
-            .delta =
-                exp2(round(log2(unit * pow(DBL_EPSILON, 1. / (g->order + 1))))),
-            .blind = true};
-    bool quadratic = worst(&l->two[two]) <= as_good * worst(best);
+        return (nevh__step){.delta =
+                                ldexp(unit, LOWEST + usual_level(g->order)),
+                            .blind = true};
+    bool quadratic = kinks || worst(&l->two[two]) <= as_good * worst(best);
     if (quadratic) {
         best = &l->two[two];
         full = two;
@@ -244,7 +258,7 @@ nevh__step nevh__scan_line(const nevh__step_selection *e,
                    usual_slope(e, term, instance, k, unit, e->neighbours));
     for (size_t at = 0; at < e->samples.count; at += sample_stride(e, term))
         scan_at(e, g, term, instance, k, at, unit, &l);
-    return choose(g, &l, unit);
+    return choose(g, &l, unit, has_kinks(term));
 }
 
 static nevh__step scan(const nevh__step_selection *e, const nevh__planned *term,

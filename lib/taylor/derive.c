@@ -33,12 +33,16 @@ static int out_of_memory(const reader *r) {
                : nevh__no_memory(r->report);
 }
 
-/* NULL: its series is known. */
-static const char *why_not(unsigned operation) {
-    switch (nevh__operation_of(operation)->kind) {
+/* NULL: its series is known, up to its edge if it has one. */
+static const char *why_not(const nevh__instruction *c) {
+    const nevh__operation_traits *f = nevh__operation_of(c->operation);
+    bool of_time = (c->a.by | c->b.by) == NEVH__BY_T;
+    switch (f->kind) {
     case NEVH__KIND_KINK:
-        return "is not analytic, so that its derivatives say nothing about it "
-               "elsewhere";
+        return f->edge && !of_time
+                   ? NULL
+                   : "is not analytic, so that its derivatives say nothing "
+                     "about it elsewhere";
     case NEVH__KIND_SPECIAL:
         return "is one whose recurrence is not known here";
     default:
@@ -47,11 +51,11 @@ static const char *why_not(unsigned operation) {
 }
 
 static int refuse_operation(const reader *r, const nevh_term *term,
-                            unsigned operation) {
+                            const nevh__instruction *c) {
     char text[200];
     snprintf(text, sizeof text, "its function %s(...) %s",
-             nevh__operation_name((nevh__tape_operation)operation),
-             why_not(operation));
+             nevh__operation_name((nevh__tape_operation)c->operation),
+             why_not(c));
     return refuse(r, term, text);
 }
 
@@ -105,11 +109,13 @@ static int read_instance(reader *r, const nevh_term *term, size_t instance,
         const nevh__instruction *c = &tape->code[i];
         int a = operand(r, term, instance, slots, c->a);
         int b = operand(r, term, instance, slots, c->b);
-        if (why_not(c->operation) && !is_between_breaks(r, c) &&
+        bool between = is_between_breaks(r, c);
+        if (why_not(c) && !between &&
             !(nevh__graph_is_number(r->g, a, NULL) &&
               nevh__graph_is_number(r->g, b, NULL)))
-            return refuse_operation(r, term, c->operation);
-        nevh__graph_watch(r->g, c->operation, a, b, term->effect);
+            return refuse_operation(r, term, c);
+        if (!between)
+            nevh__graph_watch(r->g, c->operation, a, b, term->effect);
         slots[c->to] = operate(r->g, c->operation, a, b);
         if (c->operation == NEVH__SINCOS)
             slots[c->also] = operate(r->g, NEVH__COS, a, a);
@@ -231,6 +237,8 @@ int nevh__graph_of_system(nevh__graph *g, const nevh_system *system,
     for (size_t i = 0; !status && i < system->n_terms; i++)
         if (nevh__term_on(system, system->terms[i]))
             status = read_term(&r, system->terms[i]);
+    if (!status)
+        nevh__graph_join_cuts(g, r.roots, r.n_roots);
     if (!status)
         status = watch_poles(&r);
     if (!status)

@@ -148,18 +148,25 @@ double nevh__domain_reach(const nevh__recurrence *r, const double rows[],
 
 size_t nevh__domain_edge(const nevh__recurrence *r, const double rows[],
                          size_t orders, double reach) {
-    static const double beyond = 16;
+    static const double beyond = 16, least = 0x1p-130; /* of halvings */
     size_t which = SIZE_MAX, finite = 0;
     for (bool all = true; all && finite < orders; finite += all)
         for (size_t i = 0; i < r->n_watched; i++)
             all = all && isfinite(rows[finite * r->n_watched + i]);
     if (finite)
-        shorten(r, rows, finite, beyond * reach, &which);
+        shorten(r, rows, finite, fmax(beyond * reach, least), &which);
     return which;
 }
 
 bool nevh__domain_is_closed(const nevh__recurrence *r, size_t edge) {
     return edge != SIZE_MAX && r->edges[edge].function == NEVH__CBRT;
+}
+
+size_t nevh__domain_kink(const nevh__recurrence *r) {
+    for (size_t i = 0; i < r->n_edges; i++)
+        if (nevh__operation_of(r->edges[i].function)->kind == NEVH__KIND_KINK)
+            return i;
+    return SIZE_MAX;
 }
 
 void nevh__domain_words(const nevh__recurrence *r, size_t edge, char text[],

@@ -129,6 +129,8 @@ void nevh__graph_watch(nevh__graph *g, unsigned operation, int a, int b,
     if (a >= 0 && b >= 0)
         watch_power(g, operation, a, b, effect);
     const nevh__operation_traits *f = nevh__operation_of(operation);
+    if (operation == NEVH__CBRT && nevh__graph_cube_root(g, a) >= 0)
+        return;
     if (f->edge) {
         e.strict = !f->touches;
         e.node = nevh__graph_build(g, f->edge, a, b);
@@ -140,6 +142,57 @@ void nevh__graph_watch(nevh__graph *g, unsigned operation, int a, int b,
         e.also = b;
     }
     add(g, e);
+}
+
+/* True if a node changes by whole turns where its operands do; *known is false where
+   it may change by something else. */
+static bool turns_with(const nevh__graph_node *x, const bool turns[],
+                       bool *known) {
+    bool any = (x->a >= 0 && turns[x->a]) || (x->b >= 0 && turns[x->b]);
+    bool circular = x->kind == NEVH__GRAPH_CALL &&
+                    (x->function == NEVH__SIN || x->function == NEVH__COS ||
+                     x->function == NEVH__TAN);
+    if (!any || circular)
+        return false;
+    double c = (double)x->number;
+    *known = *known &&
+             (x->kind == NEVH__GRAPH_ADD ||
+              (x->kind == NEVH__GRAPH_SCALE && c == x->number && c == rint(c)));
+    return true;
+}
+
+/* True if nothing but sines and so on reads atan2(y, x), or whole multiples of it. */
+static bool is_circular(const nevh__graph *g, int used, int y, int x,
+                        bool turns[], const int roots[], size_t count) {
+    bool known = true;
+    for (int i = 0; i < used; i++) {
+        const nevh__graph_node *n = &g->nodes[i];
+        turns[i] = n->kind == NEVH__GRAPH_CALL && n->function == NEVH__ATAN2 &&
+                   n->a == y && n->b == x;
+        turns[i] = turns[i] || turns_with(n, turns, &known);
+    }
+    for (size_t i = 0; i < count; i++)
+        known = known && !turns[roots[i]];
+    return known;
+}
+
+/* The end of the cut is left, a pole of derivatives. */
+void nevh__graph_join_cuts(nevh__graph *g, const int roots[], size_t count) {
+    int used = g->used;
+    bool *turns = nevh__array((size_t)used, sizeof *turns);
+    g->failed = g->failed || !turns;
+    for (size_t i = 0; i < g->n_edges && !g->failed; i++) {
+        nevh__graph_edge e = g->edges[i];
+        if (e.also < 0 ||
+            !is_circular(g, used, e.node, e.also, turns, roots, count))
+            continue;
+        e.node = nevh__graph_build(g, "a a * b b * +", e.node, e.also);
+        e.also = -1;
+        e.function = NEVH__DIVIDE;
+        if (e.node >= 0)
+            g->edges[i] = e;
+    }
+    free(turns);
 }
 
 /* Poles are no edges by themselves: 1/x is as analytic behind 0 as before, and

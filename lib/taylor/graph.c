@@ -220,6 +220,90 @@ static int whole_power(nevh__graph *g, int a, long n) {
 
 enum { MOST_MULTIPLIED = 1 << 20 };
 
+/* The factor k of a node k x, and x. */
+static nevh__wide factor_of(const nevh__graph *g, int i, int *x) {
+    bool scaled = at(g, i)->kind == NEVH__GRAPH_SCALE;
+    *x = scaled ? at(g, i)->a : i;
+    return scaled ? at(g, i)->number : 1;
+}
+
+/* The exponent n of a product x^n, or 0. */
+static double whole_exponent(const nevh__graph *g, int i) {
+    const nevh__graph_node *x = at(g, i);
+    return x->kind == NEVH__GRAPH_MULTIPLY && x->base != i ? x->power : 0;
+}
+
+static bool is_even(double x) {
+    return fmod(x, 2) == 0;
+}
+
+static int times_power(nevh__graph *g, nevh__wide k, nevh__wide c, int rest) {
+    return nevh__graph_scale(g, nevh__operation_wide(NEVH__POWER, k, c), rest);
+}
+
+/* (k x^n)^c where it is analytic, as of n = 4 and c = 1/2; else -1. */
+static int even_power(nevh__graph *g, int a, nevh__wide c) {
+    int x;
+    nevh__wide k = factor_of(g, a, &x);
+    double n = whole_exponent(g, x), power = n * (double)c;
+    if (!(k > 0) || !(power > 0) || !is_even(n) || !is_even(power))
+        return -1;
+    return times_power(g, k, c, nevh__graph_power(g, at(g, x)->base, power));
+}
+
+int nevh__graph_cube_root(nevh__graph *g, int a) {
+    int x;
+    if (bad(g, a, a))
+        return -1;
+    nevh__wide k = factor_of(g, a, &x);
+    double n = whole_exponent(g, x);
+    if (n == 0 || fmod(n, 3) != 0)
+        return -1;
+    return nevh__graph_scale(g, nevh__operation_wide(NEVH__CBRT, k, k),
+                             nevh__graph_power(g, at(g, x)->base, n / 3));
+}
+
+/* v of a step (sign(v) + 1)/2, which max and min have; else -1. */
+static int step_of(const nevh__graph *g, int i) {
+    const nevh__graph_node *x = at(g, i);
+    nevh__wide half = 0;
+    int a = x->a, b = x->b, sign;
+    if (x->kind != NEVH__GRAPH_ADD ||
+        !(nevh__graph_is_number(g, a, &half) ||
+          nevh__graph_is_number(g, b, &half)) ||
+        half != 0.5)
+        return -1;
+    a = nevh__graph_is_number(g, a, NULL) ? b : a;
+    half = factor_of(g, a, &sign);
+    x = at(g, sign);
+    return half == 0.5 && x->kind == NEVH__GRAPH_CALL &&
+                   x->function == NEVH__SIGN
+               ? x->a
+               : -1;
+}
+
+/* max(k u, 0)^c = step |k u|^c, whose series is not that of 0^c where the maximum
+   is 0; else -1. */
+static int power_of_maximum(nevh__graph *g, int a, nevh__wide c) {
+    int x, u, v, step;
+    nevh__wide k = factor_of(g, a, &x);
+    if (c < 0 || at(g, x)->kind != NEVH__GRAPH_MULTIPLY)
+        return -1;
+    for (int i = 0; i < 2; i++) {
+        step = i ? at(g, x)->a : at(g, x)->b;
+        u = i ? at(g, x)->b : at(g, x)->a;
+        int of = step_of(g, step);
+        nevh__wide m = of < 0 ? 0 : factor_of(g, of, &v);
+        if (of < 0 || v != u || !(k * m > 0))
+            continue;
+        int size = nevh__graph_apply(g, NEVH__ABS, u, u);
+        int power =
+            nevh__graph_multiply(g, step, nevh__graph_power(g, size, c));
+        return times_power(g, k < 0 ? -k : k, c, power);
+    }
+    return -1;
+}
+
 int nevh__graph_power(nevh__graph *g, int a, nevh__wide c) {
     double near = (double)c;
     if (bad(g, a, a))
@@ -231,6 +315,11 @@ int nevh__graph_power(nevh__graph *g, int a, nevh__wide c) {
         return whole_power(g, a, (long)near);
     if (c == -1)
         return invert(g, a);
+    int simpler = whole ? -1 : even_power(g, a, c);
+    if (!whole && simpler < 0)
+        simpler = power_of_maximum(g, a, c);
+    if (simpler >= 0 || g->failed)
+        return simpler;
     double inner = (double)at(g, a)->number; /* a whole one: of either sign */
     if (at(g, a)->kind == NEVH__GRAPH_POWER && !whole && inner != rint(inner))
         return nevh__graph_power(g, at(g, a)->a, at(g, a)->number * c);
@@ -315,6 +404,9 @@ int nevh__graph_apply(nevh__graph *g, nevh__tape_operation f, int a, int b) {
         return -1;
     if (nevh__graph_is_number(g, a, &x) && nevh__graph_is_number(g, b, &y))
         return nevh__graph_number(g, nevh__operation_wide(f, x, y));
+    int root = f == NEVH__CBRT ? nevh__graph_cube_root(g, a) : -1;
+    if (root >= 0)
+        return root;
     switch (f) {
     case NEVH__ADD:
         return nevh__graph_add(g, a, b);

@@ -81,6 +81,9 @@ int nevh__graph_add(nevh__graph *, int a, int b);
 int nevh__graph_scale(nevh__graph *, nevh__wide, int a);
 int nevh__graph_multiply(nevh__graph *, int a, int b);
 int nevh__graph_power(nevh__graph *, int a, nevh__wide exponent);
+/* The cube root of a multiple of x^3, x^6 and so on, which is analytic; -1 of other
+   nodes. */
+int nevh__graph_cube_root(nevh__graph *, int a);
 /* Any operation whose derivatives are known.  Of kinks series hold between these.
    b is a where there is one argument. */
 int nevh__graph_apply(nevh__graph *, nevh__tape_operation, int a, int b);
@@ -89,6 +92,10 @@ int nevh__graph_build(nevh__graph *, const char *formula, int a, int b);
 /* Adds what an operation on nodes asks for; its result is another node. */
 void nevh__graph_watch(nevh__graph *, unsigned operation, int a, int b,
                        const char *effect);
+/* Forgets the cut of an angle that all functions take as if whole turns were
+   nothing.
+   roots   nodes that are H's values */
+void nevh__graph_join_cuts(nevh__graph *, const int roots[], size_t count);
 /* The same of all poles that functions have been given. */
 void nevh__graph_watch_poles(nevh__graph *, const char *effect);
 bool nevh__graph_is_number(const nevh__graph *, int node, nevh__wide *value);

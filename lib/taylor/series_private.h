@@ -90,6 +90,9 @@ size_t nevh__domain_edge(const nevh__recurrence *, const double rows[],
 /* True if an orbit goes on behind an edge: the function is finite there for all
    arguments, and so is the momentum. */
 bool nevh__domain_is_closed(const nevh__recurrence *, size_t edge);
+/* The first edge that is a kink of an operation, behind which an orbit goes on;
+   SIZE_MAX: there is none. */
+size_t nevh__domain_kink(const nevh__recurrence *);
 /* "sqrt(...) of effect "V" is not analytic ..." */
 void nevh__domain_words(const nevh__recurrence *, size_t edge, char text[],
                         size_t room);

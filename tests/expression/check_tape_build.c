@@ -183,6 +183,30 @@ TEST(what_is_read) {
     nevh__tape_free(tape);
 }
 
+/* An even function takes the same of x as of abs(x), and has no kink. */
+TEST(even_functions_need_no_abs) {
+    const double even[] = {2, 4, 6, 10, -2};
+    for (size_t i = 0; i < sizeof even / sizeof *even; i++) {
+        begin();
+        int size = apply(NEVH__ABS, x, x);
+        ck_assert_int_eq(apply(NEVH__POWER, size, number(even[i])),
+                         apply(NEVH__POWER, x, number(even[i])));
+        ck_assert_int_ne(apply(NEVH__POWER, size, number(even[i] + 1)),
+                         apply(NEVH__POWER, x, number(even[i] + 1)));
+        nevh__tape_abandon(b);
+    }
+    begin();
+    int size = apply(NEVH__ABS, x, x);
+    ck_assert_int_eq(apply(NEVH__MULTIPLY, size, size),
+                     apply(NEVH__MULTIPLY, x, x));
+    ck_assert_int_eq(apply(NEVH__COS, size, -1), apply(NEVH__COS, x, -1));
+    ck_assert_int_eq(apply(NEVH__COSH, size, -1), apply(NEVH__COSH, x, -1));
+    ck_assert_int_eq(apply(NEVH__ABS, size, -1), size);
+    ck_assert_int_ne(apply(NEVH__SIN, size, -1), apply(NEVH__SIN, x, -1));
+    ck_assert_int_ne(apply(NEVH__CUBE, size, -1), apply(NEVH__CUBE, x, -1));
+    nevh__tape_abandon(b);
+}
+
 TEST_EACH(kinks_are_told, 6) {
     static const nevh__tape_operation kinked[] = {
         NEVH__ABS, NEVH__MIN, NEVH__MAX, NEVH__SIGN, NEVH__MOD, NEVH__FLOOR};

@@ -164,6 +164,7 @@ static nevh_separability separability;
     X(REAL, nevh_reference_horizon, (NULL))                                    \
     X(REAL, nevh_reference_ends, (NULL))                                       \
     X(REAL, nevh_solution_ends, (NULL, 0, 1, out, out))                        \
+    X(STATUS, nevh_solution_smooth, (NULL, 0, 1, out, out, NULL, 0))           \
     X(POINTER, nevh_timing_new, (NULL, 0, 1, out, out))                        \
     X(ANY, nevh_timing_free, (NULL))                                           \
     X(NUMBER, nevh_timing_breaks, (NULL))                                      \

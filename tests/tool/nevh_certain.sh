@@ -120,8 +120,11 @@ for option in '--dt 0.1' '--integrators verlet' '--gradient exact' --portable; d
     exits 2 reference pendulum --at 1 $option
     says 'is no option of nevh reference'
 done
+# Digits up to the kink, which the orbit meets at t = sqrt(2), and none behind it.
 scene wall 'x = 1' 'p_x^2/2 + abs(x)'
-exits 2 reference $work/wall.nevh --at 1
+exits 0 reference $work/wall.nevh --at 1
+has '^ *1 +x +0\.5'
+exits 1 reference $work/wall.nevh --at 1.5
 says 'abs'
 scene fall 'x = 1' 'p_x^2/2 - 1/x'
 exits 1 reference $work/fall.nevh --at 3

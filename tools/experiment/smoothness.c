@@ -7,25 +7,24 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "experiment/trial_run.h"
 #include <math.h>
+#include <nevh/reference.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A series goes eight steps ahead at most. */
 enum { STEPS = 1000 };
-static const double most_series = 5e3,
-                    most_pairs = 1e6; /* of variables, in all */
 static const double tolerance = 1e-10;
 
-static nevh_stepper *stepper(const plan *p, const nevh_integrator *scheme) {
+static nevh_stepper *stepper(const plan *p) {
     nevh_options o = plan_options(p, "exact");
     o.tolerance = tolerance;
     o.native = NEVH_NATIVE_NEVER;
-    return nevh_stepper_new(p->system, scheme, &o);
+    return nevh_stepper_new(p->system, nevh_dop853, &o);
 }
 
 static double most(const plan *p) {
+    static const double gradients = 5e3, pairs = 1e6; /* of variables */
     double n = (double)p->n;
-    return fmin(most_series, most_pairs / (n * n));
+    return fmin(gradients, pairs / (n * n));
 }
 
 /* An orbit that keeps H but for a jump, which derivatives do not tell of; to be
@@ -42,14 +41,10 @@ static char *jump(const plan *p, const nevh_energy *energy, double before,
                       t, now - before);
 }
 
-smoothness smoothness_on_way(const plan *p, char **why) {
+/* Jumps on the orbit where H has no series, as of floor. */
+static char *first_jump(const plan *p) {
     size_t n = p->n;
-    nevh_stepper *s = stepper(p, nevh_taylor);
-    bool series = !nevh_stepper_status(s);
-    if (!series) { /* of floor, for instance: jumps alone are looked for */
-        nevh_stepper_free(s);
-        s = stepper(p, nevh_dop853);
-    }
+    nevh_stepper *s = stepper(p);
     nevh_energy *energy = nevh_energy_new(p->system, NULL);
     double *z = tool_allocate(2 * n, sizeof *z);
     double begin = p->run->t_start, h = (p->t_end - begin) / STEPS;
@@ -67,16 +62,29 @@ smoothness smoothness_on_way(const plan *p, char **why) {
         if ((double)nevh_stepper_counts(s).gradients > most(p))
             break;
     }
-    bool out = series && status == NEVH_EDOM;
-    bool ends = out && !isfinite(plan_ends(p)); /* else the solution does */
-    if (ends)
-        *why = text_print("%s", nevh_stepper_message(s));
-    else if (jumps)
-        *why = jumps;
     nevh_stepper_free(s);
     nevh_energy_free(energy);
     free(z);
-    return ends || jumps                ? SMOOTHNESS_NONE
-           : series && (!status || out) ? SMOOTHNESS_ALL
-                                        : SMOOTHNESS_UNKNOWN;
+    return jumps;
+}
+
+smoothness smoothness_on_way(const plan *p, char **why) {
+    char text[300];
+    int status = nevh_solution_smooth(p->system, p->run->t_start, p->t_end,
+                                      p->q, p->p, text, sizeof text);
+    if (status == NEVH_OK)
+        return SMOOTHNESS_ALL;
+    *why = status == NEVH_EDOM ? text_print("%s", text) : first_jump(p);
+    return *why ? SMOOTHNESS_NONE : SMOOTHNESS_UNKNOWN;
+}
+
+void smoothness_notes(const plan *p, list *notes) {
+    char *why = NULL;
+    if (smoothness_on_way(p, &why) == SMOOTHNESS_NONE)
+        list_print(notes,
+                   "H is not smooth on the orbit (%s): schemes may lose their "
+                   "order there, and differences that reach across have larger "
+                   "errors than estimated",
+                   why);
+    free(why);
 }

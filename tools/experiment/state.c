@@ -1,6 +1,7 @@
 /* nevh: state errors: the reference of a plan, and how they are shown.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "row.h"
+#include "trial_run.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -121,6 +122,8 @@ void state_notes(const plan *p, list *notes) {
                    is_exact ? "the " : "", text, is_exact ? own : "",
                    has_arrays(p) ? "; elements of an array share the widest"
                                  : "");
+    if (!is_exact && strncmp(text, "taylor", 6) != 0)
+        smoothness_notes(p, notes);
 }
 
 bool state_out_of_step(const row *r) {

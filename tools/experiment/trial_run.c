@@ -382,9 +382,12 @@ void trial_run_words(const plan *p, const trial_run *f, list *notes) {
         list_print(notes,
                    f->noise > 0
                        ? "Gradient: the rounding of %s causes an energy error "
-                         "of %.1e over the run"
+                         "of %.1e over the run%s"
                        : "Gradient: %s adds no rounding error of its own",
-                   p->gradients.item[0], f->noise);
+                   p->gradients.item[0], f->noise,
+                   f->rough ? "; its differences err more where they reach "
+                              "across a place where H is not smooth"
+                            : "");
     edge_notes(p, f, notes);
 }
 

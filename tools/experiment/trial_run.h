@@ -46,6 +46,8 @@ typedef enum {
 } smoothness;
 /* why  out, of SMOOTHNESS_NONE: where it is not; to be freed */
 smoothness smoothness_on_way(const plan *, char **why);
+/* A note where it is not smooth. */
+void smoothness_notes(const plan *, list *notes);
 
 /* trial_run.c: what a short trial run says of a run. */
 typedef struct {
@@ -57,6 +59,7 @@ typedef struct {
     nevh_chaos_finding chaos; /* unless that; of a longer time, too */
     double length;            /* time */
     double noise;             /* of the gradient: relative energy error; NAN */
+    bool rough;  /* H is not smooth on its way; false until somebody looks */
     double edge; /* of H: distance in lengths; INFINITY: none is near */
     size_t edge_variable; /* coordinates first */
     double edge_at, edge_time;

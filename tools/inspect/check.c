@@ -19,8 +19,8 @@ static void finding_notes(const nevh_probe *probe, nevh_question question,
 }
 
 /* On the orbit a Taylor series knows better than differences beside it. */
-static void smoothness_notes(const plan *p, const nevh_probe *probe,
-                             list *notes) {
+static smoothness smoothness_finding(const plan *p, const nevh_probe *probe,
+                                     list *notes) {
     char *why = NULL;
     smoothness on_way = smoothness_on_way(p, &why);
     nevh_finding f = nevh_probe_finding(probe, NEVH_IS_SMOOTH);
@@ -35,10 +35,13 @@ static void smoothness_notes(const plan *p, const nevh_probe *probe,
     if (why)
         list_print(notes, "  (%s)", why);
     free(why);
+    return on_way;
 }
 
-static void probe_notes(const plan *p, list *notes) {
+/* Tells whether H is smooth on its way, if that was asked. */
+static smoothness probe_notes(const plan *p, list *notes) {
     enum { SHOWN = 8 };
+    smoothness on_way = SMOOTHNESS_UNKNOWN;
     nevh_options o = plan_options(p, p->gradients.item[0]);
     nevh_probe *probe = nevh_probe_new(p->system, &o);
     if (nevh_probe_status(probe)) {
@@ -50,7 +53,7 @@ static void probe_notes(const plan *p, list *notes) {
                         "deviation, and the deviation that rounding explains");
         for (int i = 0; i < NEVH_FINDINGS; i++)
             if (i == NEVH_IS_SMOOTH)
-                smoothness_notes(p, probe, notes);
+                on_way = smoothness_finding(p, probe, notes);
             else
                 finding_notes(probe, (nevh_question)i, notes);
         list_add(notes, "Lengths over which H varies:");
@@ -62,6 +65,7 @@ static void probe_notes(const plan *p, list *notes) {
             list_print(notes, "  and %zu more", p->n - SHOWN);
     }
     nevh_probe_free(probe);
+    return on_way;
 }
 
 static void energy_notes(const plan *p, list *notes) {
@@ -283,7 +287,7 @@ static int check_plan(const options *o, const plan *p) {
     if (!o->quiet || !is_table) {
         plan_notes(p, &result.before);
         energy_notes(p, &result.before);
-        probe_notes(p, &result.before);
+        ahead.rough = probe_notes(p, &result.before) == SMOOTHNESS_NONE;
         trial_run_words(p, &ahead, &result.before);
         conserved_words(p, &result.before);
         note_tables(p, &result.before);

@@ -2,6 +2,7 @@
    orbit, and their part in the energy error.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
+#include "experiment/trial_run.h"
 #include "gradients_private.h"
 #include "plot/plot.h"
 #include <math.h>
@@ -112,6 +113,7 @@ static void orbit_notes(const gradients_job *c, page *result) {
                c->integrator, c->dt, c->steps, c->plan->run->t_start,
                c->plan->run->t_start + (double)c->steps * c->dt,
                c->exact.count);
+    smoothness_notes(c->plan, &result->before);
     list_print(
         &result->after,
         "truncation, rounding: errors expected when the half-spread was "
