@@ -148,11 +148,12 @@ static variation vary(const nevh__step_selection *e, const nevh__planned *term,
     return v;
 }
 
-/* A power of the distance has no length: its parts stay the same. */
+/* A power of the distance has no length: its parts stay the same.  Of what has
+   settled far away, as 1/r has, both are the same. */
 static bool alike(const variation *a, const variation *b) {
     double share = b->rest / b->whole, noise = b->rounding / b->whole;
     return fabs(a->rest / a->whole - share) <= 1e-9 * share + noise &&
-           noise < 0.1;
+           noise < 0.1 && !(fabs(a->whole - b->whole) <= 0.1 * b->whole);
 }
 
 /* True if the variation is rounding of an argument, as of cos(x/1e-30) far from
@@ -237,7 +238,9 @@ double nevh__curve_length(const nevh__step_selection *e,
                           const nevh__planned *term, size_t instance, size_t k,
                           double guess) {
     variation v = vary(e, term, instance, k, guess);
-    double distance = v.whole > v.rounding ? guess : askew * guess;
+    variation aside = vary(e, term, instance, k, askew * guess);
+    bool periods = !(v.whole > v.rounding) && aside.whole > aside.rounding;
+    double distance = periods ? askew * guess : guess;
     int leaps = 0;
     double nearer = distance;
     do {
@@ -270,15 +273,23 @@ static double energy_length(const nevh__step_selection *e,
     return NAN;
 }
 
-/* A first guess that only saves time: the variable's size, or 1. */
+/* The size of variable i of n, or if it is 0 the largest of all. */
+static double size_of(const double x[], size_t n, size_t i) {
+    double most = fabs(x[i]);
+    for (size_t k = 0; x[i] == 0 && k < n; k++)
+        most = larger(most, fabs(x[k]));
+    return most;
+}
+
+/* A first guess that only saves time, so that it is a power of two: the variable's
+   size, or that of others of its kind, which have its unit; 1 where all are 0. */
 static double first_guess(const nevh__step_selection *e, size_t i) {
     size_t n = e->field->n;
     const nevh__samples *s = &e->samples;
-    double x = fabs(i < n ? s->q[e->at * n + i] : s->p[e->at * n + i - n]);
-    if (e->options->scale)
-        x = e->options->scale[i];
-    else if (e->sizes)
-        x = e->sizes[i];
+    double x = e->options->scale ? e->options->scale[i]
+               : e->sizes        ? e->sizes[i]
+               : i < n           ? size_of(s->q + e->at * n, n, i)
+                                 : size_of(s->p + e->at * n, n, i - n);
     return x > 0 && isfinite(x) ? exp2(floor(log2(x))) : 1;
 }
 

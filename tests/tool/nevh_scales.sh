@@ -112,6 +112,21 @@ yes|taylor|x = 1.3*l|K = p_x^2/(2*m);V = k*x^2/2 + k*x^4/l^2
 no|taylor|x = 1.3*l|H = p_x^2/(2*m) + k*x^2/2 - 0.1*f*x*sin(0.7*w*t)
 no|verlet|x = 1.3*l|H = p_x^2/(2*m) + k*x^2/2 - 0.1*f*x/(1 + (w*t - 3)^2)
 END
+# Starts with coordinates that are 0, whose lengths are found from elsewhere.
+while read -r name t_end; do
+    for L in 0 100 -100; do
+        rescale $L 0 0 "$srcdir/scenes/$name.nevh"
+        "$nevh" check $work/scene.nevh --t-end $t_end >$work/out 2>&1 ||
+            { fails "$name"; cat $work/out; }
+        sed -nE -e 's/^  ([a-z ]+) (yes|no) .*/\1 \2/p' \
+            -e '/^(Highest|Fastest|Chaotic)/p' $work/out >$work/$L
+        cmp -s $work/0 $work/$L || { fails "check $name in 2^$L"; diff $work/0 $work/$L; }
+    done
+    grep -q '^Highest' $work/0 || { fails "check $name"; cat $work/out; }
+done <<'END_OF_NAMES'
+earth-halley 60
+double-pendulum-as-printed 20
+END_OF_NAMES
 # Scenes that ship, in other units: 20 steps of two schemes have the same status and
 # energy error.
 rows() { # rows SCENE L E T [INTEGRATORS]
