@@ -418,6 +418,13 @@ if test -n "$gnuplot"; then # other media; files are there when they are whole
     done
     test "$(echo $work/x.p*)" = "$work/x.pdf $work/x.png" ||
         fails "leaves other files"
+    # gnuplot does not notice a full device.
+    for medium in png pdf svg; do
+        test -c /dev/full || break
+        ln -s /dev/full $work/full.$medium
+        exits 2 compare oscillator --t-end 9 --dt 0.1 --plot $work/full.$medium
+        says "full.$medium|/dev/full cannot be written"
+    done
     draws compare oscillator --t-end 9 --dt 0.1 --quiet --plot -
     has '^ +1e-16 '
     has '\*verlet *$'

@@ -139,6 +139,17 @@ exits 0 report earth-halley -o $work/halley.html --t-end 10
 grep -q '<h2>The motion</h2>' $work/halley.html || fails "has no picture"
 grep -q 'scheme beside rk4' $work/halley.html && fails "shows what is no orbit"
 
+# Where parts have no room, it says so, and writes no page.
+(
+    trap '' XFSZ
+    ulimit -f 0
+    "$nevh" report oscillator -o $work/none.html --t-end 1 2>&1
+    echo "status $?"
+) | cat >$work/said
+grep -q 'cannot be written: is the disk full' $work/said && grep -q '^status 2' $work/said ||
+    { fails "does not say that the disk is full"; cat $work/said; }
+test ! -e $work/none.html || fails "writes a page without room"
+
 # An orbit without any energy error has a report, though no curve of it.
 printf '[coordinates]\nx = 0\n[effects]\nK = p_x^2/2\nV = x^2/2\n[run]
 t_end = 2\ndt = 0.1\nintegrators = verlet\n' >$work/rest.nevh

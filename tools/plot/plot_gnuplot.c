@@ -132,14 +132,13 @@ static const struct {
     [PLOT_TEXT] = {"", 0},     [PLOT_SCREEN] = {"", 0},
 };
 
-/* True for a file that ends as its medium does, and for all that is no regular
-   file. */
+/* True for a file that ends as its medium does. */
 static bool is_whole(FILE *f, medium m) {
     enum { TAIL = 16 };
     struct stat found;
     char tail[TAIL];
-    if (fstat(fileno(f), &found) != 0 || !S_ISREG(found.st_mode))
-        return true;
+    if (fstat(fileno(f), &found) != 0)
+        return false;
     off_t from = found.st_size > TAIL ? found.st_size - TAIL : 0;
     ssize_t count = pread(fileno(f), tail, sizeof tail, from);
     return count < 0 || (count > 0 && memmem(tail, (size_t)count, ends[m].bytes,

@@ -133,31 +133,42 @@ static int draw_to(const plot *p, const target *t, FILE *drawing) {
 }
 
 /* Without the form feed at the beginning, and blanks at the ends of lines. */
-static void show(FILE *drawing) {
+static void show(FILE *drawing, FILE *f) {
     int blanks = 0, c;
-    rewind(drawing);
     while ((c = getc(drawing)) != EOF) {
         if (c == ' ') {
             blanks++;
             continue;
         }
         if (c != '\n')
-            printf("%*s", blanks, "");
+            fprintf(f, "%*s", blanks, "");
         blanks = 0;
         if (c != '\f')
-            putchar(c);
+            putc(c, f);
     }
-    putchar('\n');
+    putc('\n', f);
 }
 
-static int draw_in_terminal(const plot *p, const target *t) {
+static void copy(FILE *drawing, FILE *f) {
+    for (int c; (c = getc(drawing)) != EOF;)
+        putc(c, f);
+}
+
+/* In a file between: gnuplot reports no error of writing, and it may be a device. */
+static int draw_between(const plot *p, const target *t, FILE *f) {
     FILE *drawing = tmpfile();
     if (!drawing)
         return tool_refuse("no temporary file: %s", strerror(errno));
     int status = draw_to(p, t, drawing);
+    rewind(drawing);
     if (!status)
-        show(drawing);
+        (t->medium == PLOT_TEXT ? show : copy)(drawing, f);
     fclose(drawing);
+    return status;
+}
+
+static int draw_in_terminal(const plot *p, const target *t) {
+    int status = draw_between(p, t, stdout);
     if (!status && (fflush(stdout) || ferror(stdout)))
         return tool_refuse("the plot cannot be written: %s", strerror(errno));
     return status;
@@ -171,7 +182,7 @@ static int draw_to_file(const plot *p, const char *file, const target *t) {
     if (t->medium == PLOT_SVG)
         plot_svg(p, t, out.stream);
     else
-        status = draw_to(p, t, out.stream);
+        status = draw_between(p, t, out.stream);
     return output_close(&out, status);
 }
 

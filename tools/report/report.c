@@ -188,6 +188,10 @@ static report_part make_part(report_job *w, const kind_of_part *kind,
     part.picture = text_read(w->picture);
     part.narrow = text_read(w->narrow);
     part.messages = text_read(w->messages);
+    if (part.status == TOOL_USAGE && !part.messages) /* they had no room */
+        part.messages = text_print("nevh: %s: parts of the report cannot be "
+                                   "written: is the disk full?\n",
+                                   w->folder);
     part.command = command_of(w, scene, kind->arguments);
     return part;
 }
@@ -259,7 +263,9 @@ static bool has_verdict(const report_part *part) {
 /* The comparison is what a report is for: without it there is none. */
 static int refuse(const char *scene, const report_part *part) {
     fputs(part->messages ? part->messages : "", stderr);
-    tool_refuse("%s: no report, since no integrator has a row with numbers",
+    tool_refuse(part->html ? "%s: no report, since no integrator has a row "
+                             "with numbers"
+                           : "%s: no report, since there is no comparison",
                 scene);
     return part->status == TOOL_FAILED ? TOOL_FAILED : TOOL_USAGE;
 }
