@@ -172,7 +172,7 @@ rm $work/rows.csv.state
 mkfifo $work/rows.csv.state
 exits 2 run pendulum --t-end 5 --samples 3 --resume $work/rows.csv
 exits 3 sweep pendulum --vary 'phi = range(0.1, 3, 100000000)' --t-end 1 \
-    --outcomes energy_error -o $work/x.npy --stop-after 0.2s
+    --outcomes energy_error -o $work/x.npy --stop-after 1s
 says 'stopped before [0-9]+ of 100000000 members'
 rm $work/x.npy.txt
 ln -s /dev/zero $work/x.npy.txt

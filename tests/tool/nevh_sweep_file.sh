@@ -114,6 +114,16 @@ exits 2 sweep $scene -o $work/folder.npy
 says 'cannot be written'
 exits 2 sweep $scene -o $work/x.csv --stop-after 1h
 says 'take a FILE\.npy'
+# Calls that are shorter than a member would repeat themselves for ever.
+for width in '' '--width 1'; do
+    exits 1 sweep pendulum --vary 'phi = range(0.5, 2, 4)' --outcomes energy_error \
+        --t-end 1e12 --stop-after 0.3s $width -o $work/late.npy
+    says 'none of the 4 members that are left ended in the 0.3 s of --stop-after'
+    test -n "$width" || says 'or --width 1, which runs one after the other'
+    exits 1 sweep pendulum --vary 'phi = range(0.5, 2, 4)' --outcomes energy_error \
+        --t-end 1e12 --stop-after 0.3s $width --resume $work/late.npy
+    rm $work/late.npy $work/late.npy.txt
+done
 exits 2 sweep $scene -o $work/x.npy --task 4/3
 says 'there are 3'
 exits 2 sweep $scene -o $work/x.npy --task 4

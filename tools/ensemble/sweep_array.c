@@ -85,9 +85,9 @@ static int keep(void *data, const nevh_sweep_result *r) {
     return 0;
 }
 
-/* Reports the counts of the file, those of earlier runs included. */
-static int report_array(sweep_job *j) {
-    uint64_t have[4] = {0};
+/* Finds how many members of the file have each status.
+   look  whether values that are undefined are counted */
+static void count_members(sweep_job *j, bool look, uint64_t have[4]) {
     store *s = &j->store;
     double *values = tool_allocate(s->columns->count, sizeof *values);
     uint64_t looked = 0;
@@ -95,12 +95,35 @@ static int report_array(sweep_job *j) {
          i = store_next(s, i + 1), looked++) {
         nevh_member_status status = store_read(s, s->first + i, values);
         have[status]++;
-        if (status == NEVH_MEMBER_DONE)
+        if (look && status == NEVH_MEMBER_DONE)
             sweep_check_values(j, values);
     }
     have[NEVH_MEMBER_MISSING] += s->count - looked;
     free(values);
+}
+
+/* A member is not saved before its end: calls that are shorter than one repeat the
+   same steps for ever. */
+static int report_no_progress(const sweep_job *j, uint64_t missing) {
+    bool alone = j->options->width == 1;
+    tool_refuse("%s: none of the %" PRIu64
+                " members that are left ended in the %g s of --stop-after, and "
+                "--resume begins them anew: give more time%s",
+                j->store.name, missing, j->options->stop_after,
+                alone ? "" : ", or --width 1, which runs one after the other");
+    return TOOL_FAILED;
+}
+
+/* Reports the counts of the file, those of earlier runs included.
+   missing  how many members there were to run */
+static int report_array(sweep_job *j, uint64_t missing) {
+    uint64_t have[4] = {0};
+    store *s = &j->store;
+    count_members(j, true, have);
     sweep_tell_undefined(j);
+    if (j->options->stop_after > 0 && !interrupted &&
+        have[NEVH_MEMBER_MISSING] && have[NEVH_MEMBER_MISSING] == missing)
+        return report_no_progress(j, missing);
     if (have[NEVH_MEMBER_FAILED] || have[NEVH_MEMBER_NO_START])
         tool_refuse("%s: of %" PRIu64 " members %" PRIu64 " failed and %" PRIu64
                     " have no start: see %s",
@@ -119,6 +142,9 @@ static int report_array(sweep_job *j) {
 static int run_array(sweep_job *j) {
     char *late = text_print("nevh: %s: stopped: go on with --resume %s\n",
                             j->store.name, j->store.name);
+    uint64_t before[4] = {0};
+    if (!j->ranks.rank)
+        count_members(j, false, before);
     under_way = j->sweep;
     signals_catch(note_signal, late);
     stop_after(j->options->stop_after);
@@ -136,7 +162,9 @@ static int run_array(sweep_job *j) {
         status = ranks_close(&j->ranks, status);
     j->store.write = NULL;
     if (!status && !j->ranks.rank)
-        status = store_finish(&j->store) ? TOOL_USAGE : report_array(j);
+        status = store_finish(&j->store)
+                     ? TOOL_USAGE
+                     : report_array(j, before[NEVH_MEMBER_MISSING]);
     return ranks_agree(&j->ranks, status);
 }
 
@@ -204,7 +232,7 @@ static int join(sweep_job *j) {
         status = store_finish(&j->store);
     if (!status)
         status = store_settle(&j->store);
-    return status ? status : report_array(j);
+    return status ? status : report_array(j, j->store.count);
 }
 
 /* As far as members were run. */
