@@ -62,6 +62,17 @@ exits 0 fit pendulum --data $work/angle.csv --columns phi --vary g,start --dt 0.
     --integrators gauss8 --set g=6.5 --format csv
 near 6 g 9.8 1e-8
 near 6 start 2 1e-8
+# From afar: the minimum that explains the data is found, or the exit status says that
+# none was; the same model without its force explains nothing.
+for g in 40 100; do
+    exits 0 fit pendulum --data $work/angle.csv --columns phi --vary g --dt 0.05 \
+        --integrators gauss8 --set g=$g --format csv
+    near 6 g 9.8 1e-6
+done
+exits 1 fit pendulum --data $work/angle.csv --columns phi --vary phi --dt 0.05 \
+    --integrators gauss8 --without gravity
+says 'the fit does not explain the data: its residuals have [0-9]+ % of their spread'
+has '^ phi '
 # Angles are compared modulo their period.
 awk -F, '/^#/ { next } /^t/ { print "t,phi"; next }
     { printf "%s,%.17g\n", $1, $2 + 6.283185307179586*(NR % 3) }' $work/angle.csv >$work/turned.csv

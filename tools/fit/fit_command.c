@@ -11,6 +11,7 @@ typedef struct {
     plan plan;
     measured data;
     fitting fit;
+    bool poor; /* the numbers do not explain the data */
 } job;
 
 static int check_points(const job *j, const options *o) {
@@ -289,7 +290,7 @@ static char *note_errors(const job *j) {
                             "themselves)");
 }
 
-static void add_words(const job *j, const options *o, list *words) {
+static void add_words(job *j, const options *o, list *words) {
     const fitting *f = &j->fit;
     char *errors = note_errors(j);
     list_print(
@@ -308,7 +309,8 @@ static void add_words(const job *j, const options *o, list *words) {
     fit_scheme_words(f, words);
     fit_interval_words(f, words);
     judge(j, words);
-    fit_residual_words(f, f->residual, words);
+    bool alike = fit_residual_words(f, f->residual, words);
+    j->poor = fit_leaves(f, alike ? 0.5 : 1, f->chi_square);
     add_next(j, o, words);
 }
 
@@ -323,7 +325,17 @@ static void note(const job *j, const options *o, list *notes) {
                                     : "unknown, the same for all");
 }
 
-static int print(const job *j, const options *o) {
+/* The minimum is there, but not what was measured. */
+static int tell_poor(const job *j) {
+    tool_refuse("%s: the fit does not explain the data: its residuals have "
+                "%.0f %% of their spread, so its numbers are not those of the "
+                "data; begin nearer: --set, --start, with a "
+                "shorter --t-end, or add the effect that is lacking",
+                j->plan.name, 100 * sqrt(j->fit.chi_square) / j->fit.spread);
+    return TOOL_FAILED;
+}
+
+static int print(job *j, const options *o) {
     page result = {.table = table_new()};
     bool is_table = o->format == FORMAT_TABLE;
     add_columns(j, result.table, is_table);
@@ -337,7 +349,7 @@ static int print(const job *j, const options *o) {
     add_words(j, o, &result.after);
     int status = output_page(o, &result, TOOL_OK);
     page_free(&result);
-    return status;
+    return !status && j->poor ? tell_poor(j) : status;
 }
 
 /* Numbers that have gone far off, or nowhere, are seen from where they are. */

@@ -85,6 +85,8 @@ bool fit_scheme_finer(const fitting *, size_t level, bool stepwise,
 double fit_rounding(const fitting *);
 double fit_own_rounding(const fitting *); /* the part that orbits have */
 bool fit_is_rounding(const fitting *, double chi_square);
+/* True if residuals have more than that part of the spread of the data. */
+bool fit_leaves(const fitting *, double part, double chi_square);
 /* Finds the change of the orbit by rounding: the last digits of the numbers, and
    the gradients that were asked for in place of exact ones. */
 void fit_find_rounding(fitting *, const double x[]);
@@ -92,8 +94,9 @@ void fit_find_rounding(fitting *, const double x[]);
 bool fit_is_chaotic(const fitting *);
 bool fit_is_given(const fitting *); /* whether the scheme is */
 void fit_scheme_words(const fitting *, list *words);
-/* Warns if neighbouring residuals of a column are alike, which noise is not. */
-void fit_residual_words(const fitting *, const double residual[], list *words);
+/* Warns if neighbouring residuals of a column are alike, which noise is not.
+   returns  whether they are */
+bool fit_residual_words(const fitting *, const double residual[], list *words);
 
 /* fit_minimise.c */
 gsl_vector *fit_vector(size_t n);

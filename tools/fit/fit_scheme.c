@@ -60,6 +60,10 @@ static void exchange_gradients(fitting *f) {
     }
 }
 
+bool fit_leaves(const fitting *f, double part, double chi_square) {
+    return f->spread > 0 && sqrt(chi_square) > part * f->spread;
+}
+
 static double length_between(const double a[], const double b[], size_t n) {
     double sum = 0;
     for (size_t i = 0; i < n; i++)
@@ -148,10 +152,11 @@ static double neighbours(const fitting *f, const double residual[], size_t k) {
     return squares > 0 ? products / squares : 0;
 }
 
-void fit_residual_words(const fitting *f, const double residual[],
+bool fit_residual_words(const fitting *f, const double residual[],
                         list *words) {
     enum { FEWEST = 20 };
     static const double chance = 4; /* deviations */
+    size_t before = words->count;
     for (size_t k = 0; k < f->data->columns; k++) {
         double alike = neighbours(f, residual, k);
         if (f->data->points >= FEWEST && !fit_is_rounding(f, f->chi_square) &&
@@ -163,4 +168,5 @@ void fit_residual_words(const fitting *f, const double residual[],
                        "errors.  The intervals are too short then.",
                        f->data->names.item[k], alike);
     }
+    return words->count > before;
 }

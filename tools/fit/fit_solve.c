@@ -3,7 +3,8 @@
    A fit to a long orbit has many local minima, where the model is a turn ahead.
    So it is made twice: from the first values, and by and by, from the first
    eighth of the points to all of them; the second counts where noise alone would not
-   make it so much better.
+   make it so much better.  Where both explain little of the data, it is made by and
+   by from that of some values farther off which fits the beginning best.
 
    Its orbits are then computed by a finer scheme, and it is made again, until that
    changes no number by more than a tenth of its error. */
@@ -14,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { EIGHTH = 8 };
 static const double undetermined = 1e-6;
 static const double no_effect = 1e-8; /* what rounding makes is below */
 
@@ -90,25 +92,53 @@ static void start_values(const fitting *f, gsl_vector *x) {
         gsl_vector_set(x, k, f->item[k].first / f->item[k].scale);
 }
 
-/* Fits growing parts of the data; parts that fail leave the values as they are. */
-static void approach(fitting *f, gsl_vector *x) {
-    gsl_vector *before = fit_vector(f->count);
-    start_values(f, x);
-    for (size_t part = 8; part > 1; part /= 2) {
-        gsl_multifit_nlinear_workspace *w;
-        size_t used = f->data->points / part;
-        double chi_square;
-        if (used * f->data->columns < 2 * f->count + 2)
-            continue;
-        gsl_vector_memcpy(before, x);
-        if (fit_minimise(f, used, x, &chi_square, &w) ||
-            !determined(f, gsl_multifit_nlinear_jac(w)))
-            gsl_vector_memcpy(x, before);
-        free(f->undetermined);
-        f->undetermined = NULL;
-        gsl_multifit_nlinear_free(w);
-    }
+/* Fits a part of the data; where that fails, leaves the values as they are.
+   returns  the sum of squares for each number measured; infinity if it fails */
+static double fit_part(fitting *f, size_t part, gsl_vector *x) {
+    gsl_multifit_nlinear_workspace *w;
+    size_t used = f->data->points / part;
+    double chi_square;
+    if (used * f->data->columns < 2 * f->count + 2)
+        return INFINITY;
+    gsl_vector *before = fit_vector_copy(x);
+    bool failed = fit_minimise(f, used, x, &chi_square, &w) ||
+                  !determined(f, gsl_multifit_nlinear_jac(w));
+    if (failed)
+        gsl_vector_memcpy(x, before);
+    free(f->undetermined);
+    f->undetermined = NULL;
+    gsl_multifit_nlinear_free(w);
     gsl_vector_free(before);
+    return failed ? INFINITY : chi_square / (double)f->residuals;
+}
+
+/* Fits growing parts of the data. */
+static void approach(fitting *f, gsl_vector *x) {
+    for (size_t part = EIGHTH; part > 1; part /= 2)
+        fit_part(f, part, x);
+}
+
+/* Values of which one number is farther off: those that fit the beginning best.
+   returns  whether there are any */
+static bool approach_from_afar(fitting *f, gsl_vector *x) {
+    static const double changes[] = {-0.75, -0.5, -0.3, 0.4, 1, 3};
+    enum { CHANGES = sizeof changes / sizeof *changes };
+    double least = INFINITY;
+    gsl_vector *from = fit_vector(f->count);
+    for (size_t i = 0; i < f->count * CHANGES; i++) {
+        start_values(f, from);
+        double first = gsl_vector_get(from, i / CHANGES);
+        gsl_vector_set(from, i / CHANGES,
+                       first + changes[i % CHANGES] * (first ? first : 1));
+        double squares = fit_part(f, EIGHTH, from);
+        if (squares < least)
+            gsl_vector_memcpy(x, from);
+        least = fmin(least, squares);
+    }
+    gsl_vector_free(from);
+    if (least < INFINITY)
+        approach(f, x);
+    return least < INFINITY;
 }
 
 /* Finds the root mean square of each column, in its own unit. */
@@ -162,11 +192,20 @@ static attempt better(const fitting *f, attempt a, attempt b) {
 }
 
 static attempt attempt_all(fitting *f) {
+    static const double much = 0.5;
     gsl_vector *x[2] = {fit_vector(f->count), fit_vector(f->count)};
     start_values(f, x[0]);
+    start_values(f, x[1]);
     attempt a = attempt_from(f, x[0]);
     approach(f, x[1]);
-    return better(f, a, attempt_from(f, x[1]));
+    a = better(f, a, attempt_from(f, x[1]));
+    if (!a.status && !fit_leaves(f, much, a.chi_square))
+        return a;
+    gsl_vector *afar = fit_vector(f->count);
+    if (approach_from_afar(f, afar))
+        return better(f, a, attempt_from(f, afar));
+    gsl_vector_free(afar);
+    return a;
 }
 
 /* The change by orbits of another scheme. */
