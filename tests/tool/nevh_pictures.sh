@@ -99,8 +99,8 @@ texts | grep -q 'a?* &lt;b&gt;&amp;amp; \]\]&gt; &quot;q&quot;$' ||
 
 # A report has them all, and asks for no gnuplot either.
 exits 0 report pendulum -o $work/page.html --t-end 5
-test "$(grep -c '<svg class="broad"' $work/page.html)" = 7 || fails "has other pictures"
-test "$(grep -c '<svg class="narrow"' $work/page.html)" = 7 || fails "has other small pictures"
+test "$(grep -c '<svg class="broad"' $work/page.html)" = 4 || fails "has other pictures"
+test "$(grep -c '<svg class="narrow"' $work/page.html)" = 4 || fails "has other small pictures"
 test -e $work/asked && fails "asks gnuplot"
 exits 2 run pendulum --t-end 5 --plot $work/out.png
 says 'gnuplot failed'

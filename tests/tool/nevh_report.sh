@@ -44,13 +44,38 @@ cp $page $work/out
 has '^<!DOCTYPE html>'
 has '<h1>A &lt;b&gt; &amp; &quot;c&quot;</h1>'
 has '<dd class="off" tabindex="0">\(off\) <math'
-lacks '(src|href)="'
+lacks '(src|href)="[^#]'
 lacks 'https?://[^w]'
 lacks '[^a-z]nan[^a-z]'
 lacks '<p></p>'
 has '<title>nevh report: .*own\.nevh, pendulum</title>'
 for heading in 'The Hamiltonian' 'Energy errors' 'The motion' 'Phase plane' \
-    Portrait 'Order and chaos' 'What accuracy costs' Effects Gradients 'Properties of H'; do
+    Portrait 'Order and chaos' 'What accuracy costs'; do
+    has "<h2>$heading</h2>"
+done
+# The contents link to all parts, which have one heading each; facts are a table.
+sed -n 's/.*<a href="#\(part[0-9]*\)">\([^<]*\)<.*/\1 \2/p' $page >$work/links
+sed -n '/<section id=/{s/.*id="\(part[0-9]*\)".*/\1/;N;s/\n<h2>\(.*\)<\/h2>/ \1/;p;}' $page |
+    cmp -s - $work/links || fails "has other contents"
+test "$(grep -c part $work/links)" -gt 8 || fails "has few contents"
+test "$(grep -c '<table class="facts">' $page)" = 2 || fails "has no facts"
+has '<th scope="row">H</th><td>T\(p\) \+ V\(q\)</td>'
+lacks '<p>(gradient: central4|H = |t = 0)'
+# Dark pictures: each colour of integrators has another on black.
+for colour in $(sed -n 's/^    X("\(#[0-9A-F]*\)", "\(#[0-9A-F]*\)") .*/\1:\2/p' "$srcdir/tools/plot/looks.h"); do
+    has "figure \[stroke='${colour%:*}'\]\{stroke:${colour#*:}\}"
+done
+# By default a scene has what says something, and not too much of it.
+exits 0 report pendulum -o $work/usual.html --t-end 20
+test "$(wc -c <$work/usual.html)" -le 300000 || fails "has $(wc -c <$work/usual.html) bytes"
+cp $work/usual.html $work/out
+for heading in Sections 'Phase plane' Effects Gradients 'Properties of H'; do
+    lacks "<h2>$heading</h2>"
+done
+has 'nevh portrait pendulum .*--vary .*phi = range\('
+exits 0 report pendulum -o $work/usual.html --t-end 20 --all
+cp $work/usual.html $work/out
+for heading in Sections 'Phase plane' Effects Gradients 'Properties of H'; do
     has "<h2>$heading</h2>"
 done
 for element in section figure svg table math dl main; do
@@ -90,13 +115,13 @@ cp $work/variants.html $work/out
 has '<h1>Pendulum[^<]*, but g=9</h1>'
 has '<h2>Energy errors: l=1</h2>'
 has '<h2>Energy errors: l=2,m=3</h2>'
-has '<code>nevh check pendulum --set g=9 --set l=2 --set m=3 --t-end 2</code>'
+has '<code>nevh compare pendulum --set g=9 --set l=2 --set m=3 --t-end 2</code>'
 test "$(grep -c '<div class="variants">' $work/variants.html)" = \
     "$(grep -c '<h2>.*: l=1</h2>' $work/variants.html)" || fails "does not pair variants"
 for set in '--set l=1' '--set l=2 --set m=3'; do
     exits 0 compare pendulum --set g=9 $set --t-end 2
     scale=$(sed -n 's/^energy_scale: \([0-9.]*\).*/\1/p' $work/out)
-    test "$(grep -c "<p>energy_scale: $scale " $work/variants.html)" = 1 ||
+    test "$(grep -c "<th scope=\"row\">energy_scale</th><td>$scale " $work/variants.html)" = 1 ||
         fails "has not the energy $scale of $set"
 done
 
@@ -130,7 +155,7 @@ grep -q 'rk4 has then lost .* of the energy scale' $work/planets.html ||
 
 # Levels of H say nothing of driven orbits, nor is a scheme symplectic with friction.
 exits 0 report damped-driven-pendulum -o $work/driven.html --t-end 5
-grep -q '<h2>Phase plane</h2>' $work/driven.html || fails "has no phase plane"
+grep -q '<h2>Sections</h2>' $work/driven.html || fails "has no sections"
 grep -q '<h2>Portrait</h2>' $work/driven.html && fails "has levels of an H of time"
 grep -q 'scheme beside rk4' $work/driven.html && fails "calls a damped scheme symplectic"
 

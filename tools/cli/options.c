@@ -170,7 +170,7 @@ const option_row option_rows[] = {
      "what each effect changes in the orbit, costs, and rules out"},
     {"all", NULL, FLAG(all), NULL,
      "list: also the names in other packages, and sources. check: all "
-     "integrators. hard: each run"},
+     "integrators. hard: each run. report: all parts"},
     {"format", "table|csv|json", CHOICE(table_format, format), "TABLE",
      "csv for run, section and sweep, table for others, if not given",
      .words = "table|csv|json"},

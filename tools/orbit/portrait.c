@@ -7,7 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { USUAL_STEPS = 2000, MOST_POINTS = 4000, MOST_LEVELS = 16 };
+enum {
+    USUAL_STEPS = 2000,
+    MOST_POINTS = 4000,
+    MOST_LEVELS = 16,
+    MOST_NAMED = 13
+};
 
 /* The orbits of all members by one integrator. */
 typedef struct {
@@ -147,16 +152,52 @@ static size_t choose_levels(const portrait_job *j, double energy[MOST_LEVELS]) {
     return chosen;
 }
 
+static bool is_same(const double values[], size_t count) {
+    for (size_t i = 1; i < count; i++)
+        if (values[i] != values[0])
+            return false;
+    return true;
+}
+
+/* The key to a start; NULL where it needs none, or there are too many. */
+static char *name_of(const portrait_job *j, size_t member) {
+    const members *m = &j->members;
+    const char *q = nevh_scene_coordinate(j->plan.scene, 0);
+    if (m->count < 2 || m->count > MOST_NAMED)
+        return NULL;
+    return is_same(m->p, m->count)
+               ? text_print("start %s = %.4g", q, m->q[member])
+           : is_same(m->q, m->count)
+               ? text_print("start p_%s = %.4g", q, m->p[member])
+               : text_print("start %.4g, %.4g", m->q[member], m->p[member]);
+}
+
+static size_t orbit_series(const portrait_job *j, const orbits_of *o,
+                           size_t member, plot *to) {
+    char *name = name_of(j, member);
+    size_t series = plot_series(to, name);
+    plot_style(to, series, PLOT_DOTS);
+    plot_size(to, series, 0.6);
+    if (j->members.count > 1)
+        plot_set_look(to, series, member);
+    else
+        plot_integrator(to, series, o->integrator);
+    free(name);
+    return series;
+}
+
+/* Until they leave the window up or down: what wraps round then fills it. */
 static void draw_orbits(const portrait_job *j, const orbits_of *o, plot *to) {
+    const portrait_window *w = &j->levels.window;
     size_t series = 0;
+    bool inside = true;
     for (size_t k = 0, next = 0; k < o->count; k++) {
-        for (; next <= o->member[k]; next++) {
-            series = plot_series(to, NULL);
-            plot_style(to, series, PLOT_DOTS);
-            plot_size(to, series, 0.6);
-        }
-        plot_point(to, series, wrapped(j, o->points[2 * k]),
-                   o->points[2 * k + 1]);
+        double y = o->points[2 * k + 1];
+        for (; next <= o->member[k]; next++, inside = true)
+            series = orbit_series(j, o, next, to);
+        inside = inside && y >= w->low_y && y <= w->high_y;
+        if (inside)
+            plot_point(to, series, wrapped(j, o->points[2 * k]), y);
     }
 }
 
@@ -214,7 +255,6 @@ static plot *draw_plane(portrait_job *j) {
         } else {
             to = plot_new(p->title, x, y);
             plot_heading(to, heading);
-            plot_many_colours(to);
         }
         plot_span_x(to, j->levels.window.low_x, j->levels.window.high_x);
         plot_span_y(to, j->levels.window.low_y, j->levels.window.high_y);

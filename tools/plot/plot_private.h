@@ -109,6 +109,7 @@ typedef struct {
     size_t columns, lines; /* of PLOT_TEXT */
     bool colours;          /* of PLOT_TEXT */
     const char *file;      /* NULL: gnuplot's stdout */
+    size_t most_bytes;     /* of SVG; 0: PLOT_MOST_BYTES */
     bool narrow; /* for a telephone: panels and legend one below the other */
 } target;
 void plot_script(const plot *, const target *, FILE *);

@@ -271,13 +271,14 @@ static void put_picture(FILE *f, const plot *p, const layout *l,
 void plot_svg(const plot *p, const target *t, FILE *to) {
     static const double finest = 0.1, coarsest = 4, coarser = 1.5;
     layout l = plot_lay_out(p, t);
-    size_t size = PLOT_MOST_BYTES + 1;
-    for (double detail = finest; size > PLOT_MOST_BYTES; detail *= coarser) {
+    size_t most = t->most_bytes ? t->most_bytes : PLOT_MOST_BYTES;
+    size_t size = most + 1;
+    for (double detail = finest; size > most; detail *= coarser) {
         char *text = NULL;
         FILE *f = tool_owned(open_memstream(&text, &size));
         put_picture(f, p, &l, detail);
         fclose(f);
-        if (size <= PLOT_MOST_BYTES || detail * coarser > coarsest) {
+        if (size <= most || detail * coarser > coarsest) {
             fwrite(text, 1, size, to);
             size = 0;
         }

@@ -186,12 +186,16 @@ static int draw_to_file(const plot *p, const char *file, const target *t) {
     return output_close(&out, status);
 }
 
+/* Both for a page where a narrow one is wanted, which is smaller. */
 static int draw(const plot *p, const options *o, const target *t) {
+    enum { OF_PAGE = 40000 };
     if (in_terminal(o))
         return draw_in_terminal(p, t);
-    int status = draw_to_file(p, o->plot.file, t);
-    target narrow = *t;
+    target broad = *t, narrow;
+    broad.most_bytes = o->plot.narrow ? OF_PAGE : 0;
+    narrow = broad;
     narrow.narrow = true;
+    int status = draw_to_file(p, o->plot.file, &broad);
     return status || !o->plot.narrow ? status
                                      : draw_to_file(p, o->plot.narrow, &narrow);
 }

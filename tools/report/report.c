@@ -14,7 +14,8 @@ typedef struct {
     char *folder, *rows, *picture, *narrow, *messages; /* files of one part */
     size_t animations;                                 /* on the page */
     size_t parts;                                      /* so far */
-    int terminal; /* stderr, where messages of a part go to a file; else -1 */
+    list contents; /* of a scene: numbers and titles of its parts */
+    int terminal;  /* stderr, where messages of a part go to a file; else -1 */
 } report_job;
 
 typedef struct {
@@ -23,7 +24,8 @@ typedef struct {
     bool (*wanted)(nevh_scene *);
     plot_kind kind;
     bool rows, draws;
-    double budget; /* seconds; 0: as much as the command takes */
+    double budget;               /* seconds; 0: as much as the command takes */
+    bool (*usual)(nevh_scene *); /* without --all, if wanted; NULL: never */
 } kind_of_part;
 
 static bool always(nevh_scene *scene) {
@@ -56,44 +58,107 @@ static bool has_room(nevh_scene *scene) {
     return (n > 1 || is_driven(scene)) && n <= MOST;
 }
 
+static bool has_no_picture(nevh_scene *scene) {
+    return !has_picture(scene);
+}
+
+/* A section of one degree of freedom without a drive is one point, with the error of
+   the scheme. */
+static bool tells_in_sections(nevh_scene *scene) {
+    return has_sections(scene) &&
+           (nevh_scene_dof(scene) > 1 || is_driven(scene));
+}
+
 static const kind_of_part kinds[] = {
-    {"Energy errors",
-     "Each row is an integrator at one step. Bounded errors stay; drifting "
-     "errors grow with time. The picture shows the error against time.",
-     "compare", &compare_command, always, PLOT_USUAL, true, true, 0},
-    {"The motion", "Paths of the bodies, computed by the first integrator.",
-     "run --plot-kind configuration", &run_command, has_picture,
-     PLOT_KIND_configuration, false, true, 0},
-    {"A symplectic scheme beside rk4",
-     "Both take the same dt: the smallest at which rk4's loss can be seen "
-     "within the animation.",
-     "compare", NULL, has_picture, PLOT_USUAL, false, false, 0},
-    {"Phase plane", "A coordinate and its momentum, by the first integrator.",
-     "run --plot-kind phase", &run_command, always, PLOT_KIND_phase, false,
-     true, 0},
-    {"Portrait", "Orbits over level curves of H, a panel for each integrator.",
-     "portrait", &portrait_command, has_plane, PLOT_USUAL, false, true, 0},
-    {"Sections", "Points where the orbit crosses the section.", "section",
-     &section_command, has_sections, PLOT_USUAL, false, true, 0},
-    {"Order and chaos",
-     "The Lyapunov exponent of the orbit from the scene's start: how fast "
-     "orbits near by separate.",
-     "chaos --starts 2 --budget 4", &chaos_command, has_room, PLOT_USUAL, true,
-     false, 4},
-    {"What accuracy costs",
-     "Processor time for each digit. The picture is the work-precision "
-     "diagram: lower left is better.",
-     "cost --budget 5", &cost_command, always, PLOT_USUAL, true, true, 5},
-    {"Effects",
-     "What each effect reads and costs. Effects that are off cost "
-     "nothing.",
-     "effects", &effects_command, always, PLOT_USUAL, true, false, 0},
-    {"Gradients",
-     "Error and time of the gradient by each method. Large "
-     "differences suffer from truncation, small ones from rounding.",
-     "gradients", &gradients_command, always, PLOT_USUAL, true, true, 0},
-    {"Properties of H", "Tested numerically at states around the start.",
-     "check", &check_command, always, PLOT_USUAL, true, false, 0},
+    {.title = "Energy errors",
+     .about =
+         "Each row is an integrator at one step. Bounded errors stay; drifting "
+         "errors grow with time. The picture shows the error against time.",
+     .arguments = "compare",
+     .of = &compare_command,
+     .wanted = always,
+     .usual = always,
+     .rows = true,
+     .draws = true},
+    {.title = "The motion",
+     .about = "Paths of the bodies: the reference beside the first integrator.",
+     .arguments = "run --plot-kind configuration",
+     .of = &run_command,
+     .wanted = has_picture,
+     .usual = always,
+     .kind = PLOT_KIND_configuration,
+     .draws = true},
+    {.title = "A symplectic scheme beside rk4",
+     .about = "Both take the same dt: the smallest at which rk4's loss can be "
+              "seen within the animation.",
+     .arguments = "compare",
+     .wanted = has_picture,
+     .usual = always},
+    {.title = "Phase plane",
+     .about = "A coordinate and its momentum: the reference beside the first "
+              "integrator.",
+     .arguments = "run --plot-kind phase",
+     .of = &run_command,
+     .wanted = always,
+     .usual = has_no_picture,
+     .kind = PLOT_KIND_phase,
+     .draws = true},
+    {.title = "Portrait",
+     .about = "Orbits over level curves of H, a panel for each integrator.",
+     .arguments = "portrait",
+     .of = &portrait_command,
+     .wanted = has_plane,
+     .usual = always,
+     .draws = true},
+    {.title = "Sections",
+     .about = "Points where the orbit crosses the section.",
+     .arguments = "section",
+     .of = &section_command,
+     .wanted = has_sections,
+     .usual = tells_in_sections,
+     .draws = true},
+    {.title = "Order and chaos",
+     .about = "The Lyapunov exponent of the orbit from the scene's start: how "
+              "fast orbits near by separate.",
+     .arguments = "chaos --starts 2 --budget 4",
+     .of = &chaos_command,
+     .wanted = has_room,
+     .usual = always,
+     .rows = true,
+     .budget = 4},
+    {.title = "What accuracy costs",
+     .about =
+         "Processor time for each digit. The picture is the work-precision "
+         "diagram: lower left is better.",
+     .arguments = "cost --budget 5",
+     .of = &cost_command,
+     .wanted = always,
+     .usual = always,
+     .rows = true,
+     .draws = true,
+     .budget = 5},
+    {.title = "Effects",
+     .about = "What each effect reads and costs. Effects that are off cost "
+              "nothing.",
+     .arguments = "effects",
+     .of = &effects_command,
+     .wanted = always,
+     .rows = true},
+    {.title = "Gradients",
+     .about =
+         "Error and time of the gradient by each method. Large differences "
+         "suffer from truncation, small ones from rounding.",
+     .arguments = "gradients",
+     .of = &gradients_command,
+     .wanted = always,
+     .rows = true,
+     .draws = true},
+    {.title = "Properties of H",
+     .about = "Tested numerically at states around the start.",
+     .arguments = "check",
+     .of = &check_command,
+     .wanted = always,
+     .rows = true},
 };
 enum {
     KINDS = sizeof kinds / sizeof *kinds,
@@ -144,7 +209,39 @@ static char *command_of(const report_job *w, const char *scene,
     text = add_list(text, "integrators", &o->integrators);
     text = add_list(text, "gradient", &o->gradients);
     text = add_list(text, "dt", &o->dt);
+    for (size_t i = 0; i < o->vary.count; i++)
+        text = shell_option(text, "vary", o->vary.item[i]);
     return o->t_end ? shell_option(text, "t-end", o->t_end) : text;
+}
+
+/* Several starts for a portrait where the scene has one. */
+static void choose_starts(options *o, nevh_scene *scene) {
+    enum { COUNT = 6 };
+    double q = 0, p = 0;
+    if (nevh_scene_members(scene) || nevh_scene_start(scene, &q, &p) ||
+        (q == 0 && p == 0))
+        return;
+    o->vary = (list){0};
+    list_print(&o->vary, "%s%s = range(%.3g, %.3g, %d)", q != 0 ? "" : "p_",
+               nevh_scene_coordinate(scene, 0), (q != 0 ? q : p) / COUNT,
+               q != 0 ? q : p, COUNT);
+}
+
+/* The first integrator, and those of the scene that lose or gain energy: a panel
+   each. */
+static void choose_panels(options *o, nevh_scene *scene) {
+    static const char *const others[] = {"rk4", "euler"};
+    const nevh_scene_run *run = nevh_scene_run_settings(scene);
+    if (o->integrators.count || run->integrators < 3)
+        return;
+    o->integrators = (list){0};
+    list_add(&o->integrators, run->integrator[0]);
+    for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+        for (size_t i = 1; i < run->integrators; i++)
+            if (strcmp(run->integrator[i], others[k]) == 0)
+                list_add(&o->integrators, others[k]);
+    if (o->integrators.count == 1)
+        list_add(&o->integrators, run->integrator[1]);
 }
 
 /* Runs a command with stderr in a file; -1 where that cannot be. */
@@ -167,7 +264,7 @@ static int run_heard(report_job *w, const command *c, const options *o) {
 }
 
 static report_part make_part(report_job *w, const kind_of_part *kind,
-                             char *scene) {
+                             char *scene, nevh_scene *read) {
     char *words[] = {"report", scene};
     options o = *w->given;
     o.operands = (list){words, 2};
@@ -179,6 +276,11 @@ static report_part make_part(report_job *w, const kind_of_part *kind,
     o.search.budget = kind->budget;
     o.as_html = true;
     o.quiet = !kind->rows;
+    o.all = false;
+    if (kind->of == &portrait_command) {
+        choose_starts(&o, read);
+        choose_panels(&o, read);
+    }
     unlink(w->rows);
     unlink(w->picture);
     unlink(w->narrow);
@@ -192,7 +294,12 @@ static report_part make_part(report_job *w, const kind_of_part *kind,
         part.messages = text_print("nevh: %s: parts of the report cannot be "
                                    "written: is the disk full?\n",
                                    w->folder);
-    part.command = command_of(w, scene, kind->arguments);
+    part.command =
+        command_of(&(report_job){.given = &o}, scene, kind->arguments);
+    if (o.vary.item != w->given->vary.item)
+        list_free(&o.vary);
+    if (o.integrators.item != w->given->integrators.item)
+        list_free(&o.integrators);
     return part;
 }
 
@@ -275,16 +382,27 @@ static int add_part(report_job *w, const kind_of_part *kind, char *name,
                     variant *v, FILE *f) {
     int status = TOOL_OK;
     w->given = &v->given;
-    report_part part =
-        kind->of ? make_part(w, kind, name) : make_animation(w, kind, name);
+    report_part part = kind->of ? make_part(w, kind, name, v->scene)
+                                : make_animation(w, kind, name);
     part.variant = v->name;
     if (kind->of == &compare_command &&
         (part.status == TOOL_USAGE || !has_verdict(&part)))
         status = refuse(name, &part);
-    else if (part.command)
+    else if (part.command) {
+        if (kind->of == &compare_command)
+            html_find_facts(part.html, &v->facts, &v->earlier);
         html_part(f, &part, ++w->parts, &v->earlier);
+        list_print(&w->contents, "%zu %s%s%s", w->parts, kind->title,
+                   v->name ? ": " : "", v->name ? v->name : "");
+    }
     free_part(&part);
     return status;
+}
+
+static bool is_shown(const options *o, const kind_of_part *kind,
+                     nevh_scene *scene) {
+    return kind->wanted(scene) &&
+           (o->all || (kind->usual && kind->usual(scene)));
 }
 
 /* Variants side by side. */
@@ -293,31 +411,46 @@ static int add_kind(report_job *w, const kind_of_part *kind, char *name,
     int status = TOOL_OK;
     size_t wanted = 0;
     for (size_t i = 0; i < all->count; i++)
-        wanted += kind->wanted(all->item[i].scene);
+        wanted += is_shown(&all->item[i].given, kind, all->item[i].scene);
     if (!wanted)
         return TOOL_OK;
     html_side_by_side(f, all->count, true);
     for (size_t i = 0; !status && i < all->count; i++)
-        if (kind->wanted(all->item[i].scene))
+        if (is_shown(&all->item[i].given, kind, all->item[i].scene))
             status = add_part(w, kind, name, &all->item[i], f);
     html_side_by_side(f, all->count, false);
     return status;
 }
 
+/* The title, contents and facts, which are known when its parts have been made. */
+static void begin_scene(report_job *w, const options *o, const char *name,
+                        const variants *all, FILE *f) {
+    char *title = plan_title(all->item->scene, name, o);
+    html_title(f, all->item->scene, title);
+    html_contents(f, &w->contents);
+    html_side_by_side(f, all->count, true);
+    for (size_t i = 0; i < all->count; i++)
+        html_scene(f, all->item[i].scene, all->item[i].name,
+                   &all->item[i].facts);
+    html_side_by_side(f, all->count, false);
+    free(title);
+}
+
 static int add_scene(report_job *w, const options *o, char *name, FILE *f) {
     variants all;
+    char *text = NULL;
+    size_t size;
     int status = variants_open(&all, o, name);
-    if (!status) {
-        char *title = plan_title(all.item->scene, name, o);
-        html_title(f, all.item->scene, title);
-        free(title);
-        html_side_by_side(f, all.count, true);
-        for (size_t i = 0; i < all.count; i++)
-            html_scene(f, all.item[i].scene, all.item[i].name);
-        html_side_by_side(f, all.count, false);
-    }
+    FILE *parts = tool_owned(open_memstream(&text, &size));
     for (size_t i = 0; !status && i < KINDS; i++)
-        status = add_kind(w, &kinds[i], name, &all, f);
+        status = add_kind(w, &kinds[i], name, &all, parts);
+    fclose(parts);
+    if (!status) {
+        begin_scene(w, o, name, &all, f);
+        fputs(tool_owned(text), f);
+    }
+    free(text);
+    list_free(&w->contents);
     variants_close(&all);
     return status;
 }
@@ -429,11 +562,11 @@ static int report(const options *o) {
 const command report_command = {
     .name = "report",
     .operand = "SCENE...",
-    .brief = "one HTML page with all tables and pictures",
+    .brief = "one HTML page of tables and pictures",
     .help =
-        "one page of HTML with the tables and pictures of the other commands",
+        "one page of HTML with the tables and pictures of the other commands; some four pages in print",
     .examples = "report pendulum -o pendulum.html\n"
                 "report pendulum --variant g=1.6 -o moon.html",
-    .options = "SCENE STEPS variant output",
+    .options = "SCENE STEPS variant all output",
     .run = report,
 };

@@ -1,6 +1,7 @@
 /* nevh report: the parts of the page.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "config.h"
+#include "plot/looks.h"
 #include "report_private.h"
 #include <stdlib.h>
 #include <string.h>
@@ -21,8 +22,9 @@ static const char style[] =
     "tbody{border-bottom:1px solid var(--line)}\n"
     ".number{text-align:right;font-variant-numeric:tabular-nums;"
     "white-space:nowrap}\n"
-    "figure{margin:1rem 0;background:#fff;color:#000;color-scheme:light;"
-    "border-radius:4px}\n"
+    "figure{margin:1rem 0;border-radius:4px}\n"
+    ".facts th{font-weight:bold;white-space:nowrap}\n"
+    ".contents{columns:16rem;padding-left:1.2rem}\n"
     "svg{display:block;width:100%;height:auto;max-height:95vh}\n"
     ".sized{container-type:inline-size}\n"
     ".narrow{display:none;max-width:32rem;max-height:none}\n"
@@ -34,10 +36,43 @@ static const char style[] =
     "padding:.3rem 0}\n"
     "math{font-size:1.15em}\n"
     ".off{opacity:.6}\n"
-    "@media print{tr,figure{break-inside:avoid}"
+    "@media print{@page{margin:1.2cm}"
+    "body{font-size:9pt;line-height:1.25;max-width:none;padding:0}"
+    "h1{font-size:15pt;margin:0 0 .3rem}h2{font-size:11pt;margin:.6rem 0 .2rem}"
+    "p,table,dl,figure{margin:.2rem 0}table{font-size:6.8pt}pre{font-size:6.8pt}"
+    "th,td{padding:0 .3rem}"
+    "tr,figure{break-inside:avoid}"
     "h2,h3,h2+p,h2+p+p{break-after:avoid}"
-    "p{orphans:3;widows:3}svg{max-height:13cm}"
-    "dd,pre,.wide{overflow:visible}button,input{display:none}}\n";
+    "p{orphans:3;widows:3}svg{max-height:6.5cm}"
+    "dd,pre,.wide{overflow:visible}"
+    "button,input,nav,.film{display:none}}\n";
+
+/* Colours of pictures on white, and on black. */
+static const struct {
+    const char *light, *dark;
+} colours[] = {
+#define PAIR(light, dark) {light, dark},
+    NEVH_COLOURS(PAIR){"#ffffff", "#17171b"},
+    {"#444444", "#b8b8c2"},
+    {"#555555", "#a5a5b0"},
+    {"#777777", "#9a9aa6"},
+    {"#777", "#9a9aa6"},
+    {"#dddddd", "#34343a"},
+    {"#bbbbbb", "#55555e"},
+    {"#f4f4f4", "#202026"},
+    {"#000", "#ececf1"}};
+
+static void put_dark(FILE *f) {
+    fputs("@media screen and (prefers-color-scheme:dark){"
+          "figure svg{fill:#ececf1}\n",
+          f);
+    for (size_t i = 0; i < sizeof colours / sizeof *colours; i++)
+        fprintf(f,
+                "figure [stroke='%s']{stroke:%s}figure [fill='%s']{fill:%s}\n",
+                colours[i].light, colours[i].dark, colours[i].light,
+                colours[i].dark);
+    fputs("}\n", f);
+}
 
 static const char wide_style[] =
     "body{max-width:120rem}\n"
@@ -51,8 +86,9 @@ void html_head(FILE *f, const char *title, bool wide) {
           "content=\"width=device-width, initial-scale=1\">\n<title>",
           f);
     html_text(f, title);
-    fprintf(f, "</title>\n<style>\n%s%s</style>\n</head>\n<body>\n<main>\n",
-            style, wide ? wide_style : "");
+    fprintf(f, "</title>\n<style>\n%s%s", style, wide ? wide_style : "");
+    put_dark(f);
+    fputs("</style>\n</head>\n<body>\n<main>\n", f);
 }
 
 void html_side_by_side(FILE *f, size_t count, bool begins) {
@@ -94,10 +130,14 @@ static void put_picture(FILE *f, const report_part *p, size_t number) {
     fputs("</figure>\n", f);
 }
 
+static bool is_note(const char *line) {
+    return strncmp(line, "<p>", 3) == 0;
+}
+
 /* Each line of notes once: most commands begin with the same ones. */
 static void put_notes_once(FILE *f, char *html, list *earlier) {
     for (char *line = strtok(html, "\n"); line; line = strtok(NULL, "\n")) {
-        bool note = strncmp(line, "<p>", 3) == 0;
+        bool note = is_note(line);
         if (note && list_has(earlier, line))
             continue;
         if (note)
@@ -106,8 +146,47 @@ static void put_notes_once(FILE *f, char *html, list *earlier) {
     }
 }
 
+void html_find_facts(const char *html, list *facts, list *earlier) {
+    char *copy = text_print("%s", html ? html : "");
+    char *line = strtok(copy, "\n");
+    if (line && is_note(line)) { /* the title */
+        list_add(earlier, line);
+        line = strtok(NULL, "\n");
+    }
+    for (; line && is_note(line); line = strtok(NULL, "\n")) {
+        list_add(earlier, line);
+        list_print(facts, "%.*s", (int)(strlen(line) - strlen("<p></p>")),
+                   line + strlen("<p>"));
+    }
+    free(copy);
+}
+
+/* "H = T(p) + V(q)", "gradient: exact". */
+static void put_fact(FILE *f, const char *text) {
+    enum { LONGEST = 30 };
+    const char *colon = strstr(text, ": "), *equals = strstr(text, " = ");
+    const char *end = equals && (!colon || equals < colon) ? equals : colon;
+    if (end && end - text <= LONGEST)
+        fprintf(f, "<tr><th scope=\"row\">%.*s</th><td>%s</td></tr>\n",
+                (int)(end - text), text, end + (end == equals ? 3 : 2));
+    else
+        fprintf(f, "<tr><td colspan=\"2\">%s</td></tr>\n", text);
+}
+
+void html_contents(FILE *f, const list *parts) {
+    fputs("<nav aria-label=\"Contents\"><ul class=\"contents\">\n", f);
+    for (size_t i = 0; i < parts->count; i++) {
+        size_t digits = strcspn(parts->item[i], " ");
+        fprintf(f, "<li><a href=\"#part%.*s\">", (int)digits, parts->item[i]);
+        html_text(f, parts->item[i] + digits + 1);
+        fputs("</a></li>\n", f);
+    }
+    fputs("</ul></nav>\n", f);
+}
+
 void html_part(FILE *f, const report_part *p, size_t number, list *earlier) {
-    fputs("<section>\n", f);
+    fprintf(f, "<section id=\"part%zu\"%s>\n", number,
+            p->by ? " class=\"film\"" : "");
     put_heading(f, p->title, p->variant);
     fputs("<p>", f);
     html_text(f, p->about);
@@ -161,7 +240,8 @@ void html_title(FILE *f, const nevh_scene *scene, const char *title) {
     }
 }
 
-void html_scene(FILE *f, const nevh_scene *scene, const char *name) {
+void html_scene(FILE *f, const nevh_scene *scene, const char *name,
+                const list *facts) {
     const char *section = "";
     fputs("<section>\n", f);
     put_heading(f, "The Hamiltonian", name);
@@ -172,7 +252,12 @@ void html_scene(FILE *f, const nevh_scene *scene, const char *name) {
             fprintf(f, "<dt>%s</dt>\n", section = e.section);
         put_equation(f, scene, i);
     }
-    fputs("</dl>\n</section>\n", f);
+    fputs("</dl>\n", f);
+    if (facts->count)
+        fputs("<table class=\"facts\"><tbody>\n", f);
+    for (size_t i = 0; i < facts->count; i++)
+        put_fact(f, facts->item[i]);
+    fputs(facts->count ? "</tbody></table>\n</section>\n" : "</section>\n", f);
 }
 
 void html_foot(FILE *f) {

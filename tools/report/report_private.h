@@ -22,6 +22,7 @@ typedef struct {
     options given;
     nevh_scene *scene;
     list earlier; /* notes of its parts so far */
+    list facts;   /* see html_find_facts */
 } variant;
 typedef struct {
     size_t count;
@@ -45,8 +46,15 @@ void html_side_by_side(FILE *, size_t count, bool begins);
 void html_part(FILE *, const report_part *, size_t number, list *earlier);
 /* Title and source. */
 void html_title(FILE *, const nevh_scene *, const char *title);
-/* The lines that say what H is.  name: of the variant; NULL: there is one. */
-void html_scene(FILE *, const nevh_scene *, const char *name);
+/* Links to parts: the number of each, and its title. */
+void html_contents(FILE *, const list *parts);
+/* The notes that stand before the table of a part, as facts of the scene: "key: text",
+   in HTML.  earlier: see html_part. */
+void html_find_facts(const char *html, list *facts, list *earlier);
+/* The lines that say what H is, and facts.  name: of the variant; NULL: there is
+   one. */
+void html_scene(FILE *, const nevh_scene *, const char *name,
+                const list *facts);
 void html_foot(FILE *);
 
 #endif

@@ -32,6 +32,7 @@ void variants_close(variants *all) {
     for (size_t i = 0; i < all->count; i++) {
         list_free(&all->item[i].given.settings);
         list_free(&all->item[i].earlier);
+        list_free(&all->item[i].facts);
         nevh_scene_free(all->item[i].scene);
     }
     free(all->item);
