@@ -231,8 +231,9 @@ def report(scene: Any, integrators: str | Sequence[str] | None = None, dt: float
         Mapping[str, Any] | Sequence[str] | str | None = None, y0: Mapping[str, float |
         str] | Sequence[float] | None = None, gradient: str | Sequence[str] | None = None,
         gradient_step: float | None = None, portable: bool | None = None, allow_code: bool
-        | None = None, output: str | PathLike[str] | None = None, coordinates:
-        Sequence[str] | None = None, options: Sequence[str] = ()) -> Text: ...
+        | None = None, all: bool | None = None, output: str | PathLike[str] | None = None,
+        coordinates: Sequence[str] | None = None, options: Sequence[str] =
+        ()) -> Text: ...
 def run(scene: Any, integrators: str | Sequence[str] | None = None, dt: float | str |
         Sequence[float | str] | None = None, t_end: float | str | None = None, *,
         with_effects: str | Sequence[str] | None = None, without_effects: str |
