@@ -276,7 +276,7 @@ const command compare_command = {
     .help =
         "one row for each integrator and dt: energy error, orbit error, cost; then a verdict",
     .examples =
-        "compare pendulum --plot energy.svg\n"
+        "compare pendulum\n"
         "compare double-pendulum --integrators verlet,gauss4,rk4 --dt 0.01 --t-end 20 --plot energy.svg",
     .options =
         "SCENE STEPS NATIVE TABLE PLOT tolerance observable repeat transform match diagnostics plot-kind",
