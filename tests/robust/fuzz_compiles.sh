@@ -22,7 +22,7 @@ EOF
 # shellcheck disable=SC2086
 compile() {
     ${CC:-cc} -std=c11 $SANITIZE_FLAGS -Wall -Wextra -Werror -D_GNU_SOURCE -DNEVH_PORTABLE \
-        '-DNEVH_SCENES="/nowhere"' '-DNEVH_PAGE="/nowhere"' -I"$srcdir/include" -I"$srcdir/lib" \
+        '-DNEVH_SCENES="/nowhere"' '-DNEVH_PAGE="/nowhere"' '-DNEVH_PACKAGE="/nowhere"' -I"$srcdir/include" -I"$srcdir/lib" \
         -I"$srcdir/tools" $GSL_CFLAGS "$@"
 }
 

@@ -127,8 +127,9 @@ if (!/firefox/.test(basename(program))) await tried("paper", { paper: true }, as
 // It stands until it is asked to play, stops when it is asked to, and at its end.
 await tried("wide", {}, async (page, steps) => {
   check(await page.evaluate("film.controls.checkVisibility()"), "has no controls");
-  check(await page.evaluate("getComputedStyle(film.controls).colorScheme === 'light'"),
-    "has dark controls on white");
+  check(await page.evaluate(`getComputedStyle(film.controls).colorScheme ===
+    getComputedStyle(document.documentElement).colorScheme`),
+    "has light controls beside dark pictures");
   await legible(page, "broad");
   await stands(page, steps, "before it plays");
   await page.evaluate("film.play.focus()");

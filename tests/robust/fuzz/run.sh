@@ -38,7 +38,7 @@ link() {
         for part in $(cat "$srcdir/tests/robust/fuzz/parts"); do
             parts="$parts $srcdir/tools/$part.c"
         done
-    "$clang" $flags $sanitized -fsanitize=fuzzer '-DNEVH_SCENES="/nowhere"' '-DNEVH_PAGE="/nowhere"' \
+    "$clang" $flags $sanitized -fsanitize=fuzzer '-DNEVH_SCENES="/nowhere"' '-DNEVH_PAGE="/nowhere"' '-DNEVH_PACKAGE="/nowhere"' \
         "$srcdir/tests/robust/fuzz/fuzz_$1.c" $parts $work/*.o \
         ${GSL_LIBS:--lgsl -lgslcblas} -lm -ldl -o "$work/fuzz_$1"
 }
