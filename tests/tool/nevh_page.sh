@@ -69,8 +69,6 @@ cp $page $work/first.html
 exits 0 page pendulum -o $page
 cmp -s $page $work/first.html || fails "differs from run to run"
 size=$(wc -c <$page)
-most=300000
-command -v zopfli >/dev/null && command -v wasm-opt >/dev/null || most=330000
-test $size -le $most || fails "is of $size bytes"
+test $size -le 300000 || fails "is of $size bytes"
 
 exit $status
