@@ -21,6 +21,7 @@ tools_nevh_SOURCES = \
 	tools/cli/scenes.c \
 	tools/cli/sheet.c \
 	tools/experiment/plan.c \
+	tools/experiment/plan_stepper.c \
 	tools/experiment/stop.c \
 	tools/experiment/row.c \
 	tools/experiment/row_list.c \
@@ -85,6 +86,7 @@ tools_nevh_SOURCES = \
 	tools/report/report_private.h \
 	tools/report/report.c \
 	tools/report/report_html.c \
+	tools/report/report_kinds.c \
 	tools/report/variants.c \
 	tools/report/animation.c \
 	tools/report/animation_html.c \

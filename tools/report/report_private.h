@@ -3,6 +3,7 @@
 #ifndef NEVH_REPORT_PRIVATE_H
 #define NEVH_REPORT_PRIVATE_H
 
+#include "cli/commands.h"
 #include "experiment/plan.h"
 
 /* The output of one command: its page as HTML, its picture, and its messages. Each
@@ -15,6 +16,18 @@ typedef struct {
     char *narrow; /* the picture for a telephone */
     int status;
 } report_part;
+
+/* report_kinds.c: in the order of the page; the last has no title. */
+typedef struct {
+    const char *title, *about, *arguments;
+    const command *of;
+    bool (*wanted)(nevh_scene *);
+    plot_kind kind;
+    bool rows, draws;
+    double budget;               /* seconds; 0: as much as the command takes */
+    bool (*usual)(nevh_scene *); /* without --all, if wanted; NULL: never */
+} kind_of_part;
+extern const kind_of_part report_kinds[];
 
 /* variants.c: a scene with settings of its own. */
 typedef struct {
