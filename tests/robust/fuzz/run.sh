@@ -30,16 +30,24 @@ compile() {
             -c "$file" -o $work/"$name".o || return 1
     done
 }
-# link TARGET: with the parts of the command that it looks at.
+# parts: the files of the command, all but main and MPI, as an archive.
+# shellcheck disable=SC2086
+parts() {
+    mkdir $work/tools || return 1
+    for file in "$srcdir"/tools/*.c "$srcdir"/tools/*/*.c; do
+        case $file in
+        */nevh.c | *_mpi.c) continue ;;
+        esac
+        "$clang" $flags $sanitized -fsanitize=fuzzer-no-link '-DNEVH_SCENES="/nowhere"' \
+            '-DNEVH_PAGE="/nowhere"' '-DNEVH_PACKAGE="/nowhere"' \
+            -c "$file" -o $work/tools/"$(basename "$file" .c)".o || return 1
+    done
+    ar rc $work/parts.a $work/tools/*.o
+}
 # shellcheck disable=SC2086
 link() {
-    parts=
-    test "$1" = scene ||
-        for part in $(cat "$srcdir/tests/robust/fuzz/parts"); do
-            parts="$parts $srcdir/tools/$part.c"
-        done
-    "$clang" $flags $sanitized -fsanitize=fuzzer '-DNEVH_SCENES="/nowhere"' '-DNEVH_PAGE="/nowhere"' '-DNEVH_PACKAGE="/nowhere"' \
-        "$srcdir/tests/robust/fuzz/fuzz_$1.c" $parts $work/*.o \
+    "$clang" $flags $sanitized -fsanitize=fuzzer \
+        "$srcdir/tests/robust/fuzz/fuzz_$1.c" $work/parts.a $work/*.o \
         ${GSL_LIBS:--lgsl -lgslcblas} -lm -ldl -o "$work/fuzz_$1"
 }
 libfuzzer_works() {
@@ -83,7 +91,7 @@ seeds() {
 
 libfuzzer_works >$work/log 2>&1 ||
     { echo "fuzz: libFuzzer does not work here"; exit 77; }
-compile >$work/log 2>&1 ||
+{ compile && parts; } >$work/log 2>&1 ||
     { cat $work/log; exit 1; }
 seeds
 result=0
