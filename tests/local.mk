@@ -308,11 +308,13 @@ SH_LOG_COMPILER = $(SHELL)
 CHECK_TAGS = CK_EXCLUDE_TAGS
 # Seconds; ten times what a busy machine takes, since only a hang should meet it.
 TEST_TIMEOUT = 600
+# Compiled steps are kept in tests/cache, or in $NEVH_TEST_CACHE, which several
+# builds of one machine may share.
 AM_TESTS_ENVIRONMENT = \
 	$(CHECK_TAGS)=slow; export $(CHECK_TAGS); \
 	CK_DEFAULT_TIMEOUT=$(TEST_TIMEOUT); export CK_DEFAULT_TIMEOUT; \
 	CC='$(CC)'; export CC; \
-	XDG_CACHE_HOME="$$PWD/tests/cache"; export XDG_CACHE_HOME; \
+	XDG_CACHE_HOME="$${NEVH_TEST_CACHE:-$$PWD/tests/cache}"; export XDG_CACHE_HOME; \
 	NM='$(NM)'; export NM; \
 	LIBTOOL='$(LIBTOOL)'; export LIBTOOL; \
 	PKG_CONFIG='$(PKG_CONFIG)'; export PKG_CONFIG; \

@@ -79,10 +79,9 @@ static void assert_scene(size_t at, int way, size_t width, size_t turn) {
 TEST_EACH(same_bits, WAYS) {
     if (!has_compiler())
         skip_test("there is no C compiler");
-    make_cache();
+    share_cache();
     for (size_t i = 0; i < SCENES; i++)
         assert_scene(i, _i, 1, i || _i > 1 ? (i + (size_t)_i) % 4 : 4);
-    remove_cache();
 }
 
 /* Side by side, a quarter of the schemes; the complex step is not compiled. */
@@ -91,10 +90,9 @@ TEST_EACH(same_bits_of_lanes, WAYS) {
         skip_test("there is no C compiler");
     if (strcmp(ways[_i].gradient, "complex-step") == 0)
         skip_test("the complex step is not compiled for orbits side by side");
-    make_cache();
+    share_cache();
     for (size_t i = 0; i < SCENES; i++)
         assert_scene(i, _i, i % 2 ? 8 : 32, (i + (size_t)_i) % 4);
-    remove_cache();
 }
 
 /* Each function that formulas know, in V and, of time, where that is read. */
@@ -128,7 +126,7 @@ TEST_EACH(functions_same_bits, FUNCTIONS) {
     char text[300];
     if (!has_compiler())
         skip_test("there is no C compiler");
-    make_cache();
+    share_cache();
     snprintf(text, sizeof text,
              "[coordinates]\nx = 0.4, 0.3\ny = -0.7, 0.2\n[effects]\n"
              "T = p_x^2/2 + p_y^2/3 + p_x^4/50\nU = (x^2 + y^2)/2\nV = %s\n",
@@ -139,7 +137,6 @@ TEST_EACH(functions_same_bits, FUNCTIONS) {
     assert_function(scene, nevh_verlet, 0, 8); /* in vectors */
     assert_function(scene, nevh_gauss4, 0, 1);
     nevh_scene_free(scene);
-    remove_cache();
 }
 
 /* Steps that adapt: substeps that are rejected, cut short, or many of one
@@ -179,7 +176,7 @@ static void assert_adapts(nevh_scene *scene, const nevh_integrator *scheme,
 TEST_EACH(tolerance_same_bits, ADAPTIVE) {
     if (!has_compiler())
         skip_test("there is no C compiler");
-    make_cache();
+    share_cache();
     nevh_scene *scene = parsed(
         "[coordinates]\nx = 0.5, 0\ny = 0, 1.6\n[effects]\n"
         "T = (p_x^2 + 2*p_y^2)/2\nV = -1/sqrt(x^2 + y^2) + x*sin(t)/50\n");
@@ -192,7 +189,6 @@ TEST_EACH(tolerance_same_bits, ADAPTIVE) {
                    "V = x^4/4 + x*y/5 + y^2\n");
     assert_adapts(scene, *adaptive[_i], _i % 2 ? 3 : 0, 1e-7);
     nevh_scene_free(scene);
-    remove_cache();
 }
 
 /* Steps that choose their length: their times, what is kept of them, where the
@@ -200,7 +196,7 @@ TEST_EACH(tolerance_same_bits, ADAPTIVE) {
 TEST_EACH(own_time_same_bits, 2) {
     if (!has_compiler())
         skip_test("there is no C compiler");
-    make_cache();
+    share_cache();
     const nevh_integrator *scheme =
         _i ? nevh_naive_adaptive_verlet : nevh_adaptive_verlet;
     static const char *const texts[] = {
@@ -226,21 +222,19 @@ TEST_EACH(own_time_same_bits, 2) {
         }
         nevh_scene_free(scene);
     }
-    remove_cache();
 }
 
 /* Orbits side by side adapt each on its own: their steps are not compiled. */
 TEST(tolerance_of_lanes) {
     if (!has_compiler())
         skip_test("there is no C compiler");
-    make_cache();
+    share_cache();
     nevh_scene *scene = parsed(pendulum);
     pair x = pair_under(scene, nevh_dopri5, nevh_exact, false, cache, 8, 1e-6);
     ck_assert(!nevh_stepper_native(x.native, NULL));
     ck_assert_ptr_nonnull(strstr(x.why, "each on its own"));
     pair_free(&x);
     nevh_scene_free(scene);
-    remove_cache();
 }
 
 /* Trials beyond the domain of H are the kernel's; where the orbit leaves it, or
@@ -248,7 +242,7 @@ TEST(tolerance_of_lanes) {
 TEST_EACH(tolerance_failures_same, 2 * ADAPTIVE) {
     if (!has_compiler())
         skip_test("there is no C compiler");
-    make_cache();
+    share_cache();
     nevh_scene *scene = parsed(_i % 2 ? "[coordinates]\nx = 1, 0\n[effects]\n"
                                         "T = p_x^2/2\nV = -x^4\n"
                                       : "[coordinates]\nx = 1, -1\n[effects]\n"
@@ -262,7 +256,6 @@ TEST_EACH(tolerance_failures_same, 2 * ADAPTIVE) {
     ck_assert(isfinite(x.b[0]) && isfinite(x.b[1]));
     pair_free(&x);
     nevh_scene_free(scene);
-    remove_cache();
 }
 
 /* Friction, which Runge-Kutta methods have in their slopes and which stands
@@ -274,7 +267,7 @@ TEST(friction_same_bits) {
         "[friction]\nair = x: 0.3, y: 0.1\n";
     if (!has_compiler())
         skip_test("there is no C compiler");
-    make_cache();
+    share_cache();
     nevh_scene *scene = parsed(damped);
     assert_adapts(scene, nevh_dopri5, 0, 1e-7);
     assert_adapts(scene, nevh_dop853, 3, 1e-7);
@@ -291,7 +284,6 @@ TEST(friction_same_bits) {
         pair_free(&x);
     }
     nevh_scene_free(scene);
-    remove_cache();
 }
 
 /* H leaves its domain: both stop at the same state, with the same words.  Slopes
@@ -304,7 +296,7 @@ TEST_EACH(failures_same, sizeof leaving / sizeof *leaving) {
     char text[100];
     if (!has_compiler())
         skip_test("there is no C compiler");
-    make_cache();
+    share_cache();
     snprintf(text, sizeof text,
              "[coordinates]\nx = 1, -1\n[effects]\nT = p_x^2/2\nV = %s\n",
              leaving[_i]);
@@ -322,14 +314,13 @@ TEST_EACH(failures_same, sizeof leaving / sizeof *leaving) {
         pair_free(&x);
     }
     nevh_scene_free(scene);
-    remove_cache();
 }
 
 /* One orbit of many leaves it: none has gone further than the others. */
 TEST(failure_of_a_lane) {
     if (!has_compiler())
         skip_test("there is no C compiler");
-    make_cache();
+    share_cache();
     nevh_scene *scene = parsed("[coordinates]\nx = 1, -1\n[effects]\n"
                                "T = p_x^2/2\nV = sqrt(x - 0.2)\n");
     pair x = pair_of(scene, nevh_verlet, nevh_exact, false, cache, 32);
@@ -340,7 +331,6 @@ TEST(failure_of_a_lane) {
         ck_assert(isfinite(x.b[i]));
     pair_free(&x);
     nevh_scene_free(scene);
-    remove_cache();
 }
 
 /* Orbits beside one that starts afresh keep their last slopes, which were taken
@@ -348,7 +338,7 @@ TEST(failure_of_a_lane) {
 TEST(a_neighbours_jump_changes_nothing) {
     if (!has_compiler())
         skip_test("there is no C compiler");
-    make_cache();
+    share_cache();
     nevh_scene *scene = parsed("[coordinates]\nx = 0.5\n[effects]\n"
                                "T = p_x^2/2\nV = (1 + sin(t)/3)*x^4\n");
     pair x = pair_of(scene, nevh_verlet, nevh_exact, false, cache, 8);
@@ -362,14 +352,13 @@ TEST(a_neighbours_jump_changes_nothing) {
     }
     pair_free(&x);
     nevh_scene_free(scene);
-    remove_cache();
 }
 
 /* 0 times infinity is 0 in the chain rule: such a step is the tape's. */
 TEST(chain_rule) {
     if (!has_compiler())
         skip_test("there is no C compiler");
-    make_cache();
+    share_cache();
     nevh_scene *scene = parsed("[coordinates]\nx = 0, 0\ny = 1, 0.3\n"
                                "[effects]\nT = (p_x^2 + p_y^2)/2\n"
                                "V = x*sqrt(x) + y^2/2\n");
@@ -379,7 +368,6 @@ TEST(chain_rule) {
     ck_assert(pair_same(&x) && x.b[1] != 1);
     pair_free(&x);
     nevh_scene_free(scene);
-    remove_cache();
 }
 
 /* One number goes by fewer lanes than many, where that is the same algorithm: any
@@ -429,7 +417,7 @@ TEST_EACH(rescue_same_bits, 8) {
         "T = (p_x^2 + p_y^2)/2\nV = 20000*(sqrt(x^2 + y^2) - 1)^2 - x\n";
     if (!has_compiler())
         skip_test("there is no C compiler");
-    make_cache();
+    share_cache();
     nevh_scene *scene = parsed(_i < 4 || _i > 5 ? eccentric : stiff);
     pair x = pair_of(scene, _i < 4 || _i > 5 ? nevh_gauss8 : nevh_gauss16,
                      _i % 2 ? nevh_central4 : nevh_exact, _i % 2 == 0, cache,
@@ -442,14 +430,13 @@ TEST_EACH(rescue_same_bits, 8) {
     ck_assert(pair_same(&x) && counts.newtons > 0 && counts.newtons < 1000);
     pair_free(&x);
     nevh_scene_free(scene);
-    remove_cache();
 }
 
 /* Memory that one has saved the other goes on with. */
 TEST_EACH(memory_is_shared, 3) {
     if (!has_compiler())
         skip_test("there is no C compiler");
-    make_cache();
+    share_cache();
     nevh_scene *scene = parsed(pendulum);
     const nevh_integrator *schemes[] = {nevh_forest_ruth, nevh_gauss8,
                                         nevh_tao4};
@@ -472,7 +459,6 @@ TEST_EACH(memory_is_shared, 3) {
     free(other);
     pair_free(&x);
     nevh_scene_free(scene);
-    remove_cache();
 }
 
 /* No word of a scene is in what is compiled, nor any of its numbers. */

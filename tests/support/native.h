@@ -7,17 +7,27 @@
 #include "shipped.h"
 #include <stdlib.h>
 
-static char cache[64];
+static char own_cache[64];
+static const char *cache = own_cache;
 
 static inline void make_cache(void) {
-    strcpy(cache, "native.XXXXXX");
-    ck_assert_ptr_nonnull(mkdtemp(cache));
+    strcpy(own_cache, "native.XXXXXX");
+    ck_assert_ptr_nonnull(mkdtemp(own_cache));
 }
 
 static inline void remove_cache(void) {
     char command[100];
-    snprintf(command, sizeof command, "rm -rf %s", cache);
+    snprintf(command, sizeof command, "rm -rf %s", own_cache);
     ck_assert_int_eq(system(command), 0);
+}
+
+/* The cache that all suites share, where they have one. */
+static inline void share_cache(void) {
+    cache = getenv("XDG_CACHE_HOME");
+    if (cache)
+        return;
+    cache = own_cache;
+    make_cache();
 }
 
 /* Two steppers planned alike, of which one is to run compiled steps. */
