@@ -48,6 +48,16 @@ says 'is for nevh compare and nevh cost'
 exits 2 compare oscillator --plot-kind phase --plot $svg
 says 'is order, or not given'
 
+# The energy of steps that adapt is that of their tolerance.
+for tolerance in 1e-3 1e-9; do
+    exits 0 run kepler --integrator dopri5 --tolerance $tolerance --plot-kind energy \
+        --t-end 20 --plot $svg
+    grep "fill='none' stroke='#" $svg >$work/curve$tolerance
+done
+test -s $work/curve1e-3 || fails "draws no curve"
+cmp -s $work/curve1e-3 $work/curve1e-9 &&
+    fails "draws the energy error of fixed steps for dopri5 under a tolerance"
+
 # All integrators have a look, each one of its own.
 sed -n 's/^    X("\([a-z0-9-]*\)") *\\*$/\1/p' "$srcdir/tools/plot/looks.h" | sort >$work/looks
 exits 0 list integrators --format csv

@@ -77,6 +77,11 @@ const nevh_integrator *plan_scheme_at(const plan *, size_t i);
 /* The transform that it is to be planned with: of names with "+transform", and
    of schemes that choose their own times; NULL: none. */
 const nevh_system *plan_transform(const plan *, const char *name);
+/* Options of the integrator of that name, which is found: its transform, and the
+   first of the tolerances where it adapts. */
+nevh_options plan_scheme_options(const plan *, const char *name,
+                                 const char *gradient,
+                                 const nevh_integrator **);
 /* The integrator of that name, planned for the first gradient. */
 nevh_stepper *plan_stepper(const plan *, const char *name);
 /* The finer run of that kind, of the whole run with the first dt and tolerance; to be

@@ -47,14 +47,21 @@ const nevh_system *plan_transform(const plan *p, const char *name) {
                : NULL;
 }
 
-static nevh_options options_of(const plan *p, const char *name,
-                               const nevh_integrator **scheme) {
-    nevh_options o = plan_options(p, p->gradients.item[0]);
+nevh_options plan_scheme_options(const plan *p, const char *name,
+                                 const char *gradient,
+                                 const nevh_integrator **scheme) {
+    nevh_options o = plan_options(p, gradient);
     bool transformed;
     *scheme = plan_scheme(p, name, &transformed);
     o.transform = plan_transform(p, name);
     if (nevh_integrator_adaptive(*scheme) && p->tolerances)
         o.tolerance = p->tolerance[0];
+    return o;
+}
+
+static nevh_options options_of(const plan *p, const char *name,
+                               const nevh_integrator **scheme) {
+    nevh_options o = plan_scheme_options(p, name, p->gradients.item[0], scheme);
     o.steps_foreseen = p->dts ? plan_steps(p, p->dt[0]) : 0;
     return o;
 }

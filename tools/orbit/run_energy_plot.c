@@ -5,13 +5,10 @@
 #include <stdlib.h>
 
 static nevh_stepper *new_stepper(const plan *p, const char *integrator) {
-    nevh_options o = plan_options(p, p->gradients.item[0]);
-    bool transformed;
-    const nevh_integrator *scheme = plan_scheme(p, integrator, &transformed);
-    o.transform = plan_transform(p, integrator);
+    const nevh_integrator *scheme;
+    nevh_options o =
+        plan_scheme_options(p, integrator, p->gradients.item[0], &scheme);
     o.balance = p->balance;
-    if (nevh_integrator_needs_tolerance(scheme) && p->tolerances)
-        o.tolerance = p->tolerance[0];
     return nevh_stepper_new(p->system, scheme, &o);
 }
 

@@ -46,11 +46,9 @@ static const nevh_integrator *scheme_of(const gradients_job *c) {
 static nevh_options gradient_options(const gradients_job *c,
                                      const char *gradient, double step) {
     const plan *p = c->plan;
-    nevh_options o = plan_options(p, gradient);
+    const nevh_integrator *scheme;
+    nevh_options o = plan_scheme_options(p, c->integrator, gradient, &scheme);
     o.gradient_step = step;
-    o.transform = plan_transform(p, c->integrator);
-    if (nevh_integrator_adaptive(scheme_of(c)) && p->tolerances)
-        o.tolerance = p->tolerance[0];
     return o;
 }
 
