@@ -455,9 +455,21 @@ static int step_one(nevh_work *w, double t, double h, double q[], double p[]) {
     return NEVH_OK;
 }
 
+/* Steps of one lane, step i from t0 + i h; *steps: out, how many there are. */
+static int take_some(nevh_work *w, const chain *z, double t0, double h,
+                     size_t from, size_t *steps) {
+    size_t done = 0;
+    int status = NEVH_OK;
+    while (done < *steps &&
+           !(status = take(w, z, t0 + (double)(from + done) * h, h)))
+        done++;
+    *steps = done;
+    return status;
+}
+
 /* Lanes one after the other, through copies of their columns. */
-static int step_lanes(nevh_work *w, double t, double h, double q[],
-                      double p[]) {
+static int step_lanes(nevh_work *w, double t0, double h, size_t from,
+                      size_t *steps, double q[], double p[]) {
     size_t n = w->n, width = w->width, size = chain_size(w);
     double *state = w->scratch + w->scratch_size - 2 * n;
     int status = NEVH_OK;
@@ -470,12 +482,14 @@ static int step_lanes(nevh_work *w, double t, double h, double q[],
             z.rows[k] = q[k * width + lane];
             z.rows[n + k] = p[k * width + lane];
         }
-        status = take(w, &z, t, h);
+        status = take_some(w, &z, t0, h, from, steps);
         if (status)
             break;
         state_at(w, &z, *z.since, state);
-        if (nevh__not_finite(1, n, state, state + n))
-            status = nevh__fail_range(w, t, h);
+        if (nevh__not_finite(1, n, state, state + n)) {
+            *steps = 0;
+            status = nevh__fail_range(w, t0 + (double)from * h, h);
+        }
     }
     for (size_t lane = 0; !status && lane < width; lane++) {
         double *at = w->scratch + lane * size;
@@ -502,7 +516,17 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
                               "the balance of the energy under step control is "
                               "kept for one orbit, not for %zu side by side",
                               w->width);
-    return w->width == 1 ? step_one(w, t, h, q, p) : step_lanes(w, t, h, q, p);
+    size_t one = 1;
+    return w->width == 1 ? step_one(w, t, h, q, p)
+                         : step_lanes(w, t, h, 0, &one, q, p);
+}
+
+size_t nevh__taylor_run(nevh_work *w, double t0, double h, size_t from,
+                        size_t steps, double q[], double p[]) {
+    size_t done = steps;
+    while (done && step_lanes(w, t0, h, from, &done, q, p))
+        ;
+    return done;
 }
 
 const nevh_kernel nevh__taylor_kernel = {.plan = plan,

@@ -43,6 +43,10 @@ typedef struct {
     double *lost; /* 2n times FIRST: what those of orders 1 ... FIRST lost */
 } nevh__taylor_chain;
 
+/* Takes up to `steps` steps, as nevh__native_run; of the states between them none is
+   evaluated. */
+size_t nevh__taylor_run(nevh_work *, double t0, double h, size_t from,
+                        size_t steps, double q[], double p[]);
 const nevh__recurrence *nevh__taylor_recurrence(const nevh_work *,
                                                 size_t *order);
 void nevh__taylor_use(nevh_work *, nevh__series_code *, const double numbers[],

@@ -171,20 +171,49 @@ static void step_apart(nevh_ensemble *e) {
             go_along(e, lane, with);
 }
 
-/* The step that all take, and the times after it. */
+/* The times after so many steps. */
+static void pass_steps(nevh_ensemble *e, size_t steps) {
+    for (size_t lane = 0; lane < e->width; lane++) {
+        nevh__lane *l = &e->lanes[lane];
+        l->look = l->busy && !l->over;
+        l->step += steps;
+        bool last = e->whole && (double)l->step >= e->steps;
+        l->t = last ? e->options.t_end
+                    : e->options.t_start + (double)l->step * e->h;
+    }
+}
+
+/* The step that all take. */
 static void step_together(nevh_ensemble *e) {
     size_t which = 0;
     any_busy(e, &which);
     if (nevh__advance(e->stepper, e->lanes[which].t, e->h, e->q, e->p))
         step_apart(e);
+    pass_steps(e, 1);
+}
+
+/* Steps that all take before one that ends an orbit, at most `most`. */
+static size_t steps_unseen(const nevh_ensemble *e, size_t most) {
+    double steps = (double)most;
     for (size_t lane = 0; lane < e->width; lane++) {
-        nevh__lane *l = &e->lanes[lane];
-        l->look = l->busy && !l->over;
-        l->step++;
-        bool last = e->whole && (double)l->step >= e->steps;
-        l->t = last ? e->options.t_end
-                    : e->options.t_start + (double)l->step * e->h;
+        const nevh__lane *l = &e->lanes[lane];
+        if (l->busy)
+            steps = l->over ? 0 : fmin(steps, e->steps - (double)l->step - 1);
     }
+    return steps > 0 ? (size_t)steps : 0;
+}
+
+/* Steps that nobody looks at.  Returns how many. */
+static size_t leap(nevh_ensemble *e) {
+    nevh_stepper *s = e->stepper;
+    size_t which = 0, steps = steps_unseen(e, PATIENCE);
+    if (e->watches || !steps || !nevh__steps_are_plain(s))
+        return 0;
+    any_busy(e, &which);
+    size_t from = s->taken = e->lanes[which].step;
+    nevh__advance_unseen(s, e->options.t_start, e->h, from + steps, e->q, e->p);
+    pass_steps(e, s->taken - from);
+    return s->taken - from;
 }
 
 /* look_back for one lane. */
@@ -277,8 +306,10 @@ static void run_lanes(nevh_ensemble *e) {
             break;
         if (e->watches)
             look_back(e, e->h);
+        size_t unseen = leap(e);
         step_together(e);
-        asks = (to_look(e) && look_and_end(e)) || ++steps % PATIENCE == 0;
+        asks = (to_look(e) && look_and_end(e)) || unseen + 1 >= PATIENCE ||
+               ++steps % PATIENCE == 0;
         e->stopped |= nevh__ensemble_ends(e);
     }
 }

@@ -1,5 +1,6 @@
 /* nevh: the driver.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "kernels/taylor_private.h"
 #include "run/run_at_private.h"
 
 int nevh__show(nevh__running *r, bool last, double t) {
@@ -43,8 +44,7 @@ int nevh__begin_run(nevh__running *r) {
     return NEVH_OK;
 }
 
-/* True if a step is the kernel's step and nothing else. */
-static bool plain(const nevh_stepper *s) {
+bool nevh__steps_are_plain(const nevh_stepper *s) {
     return !s->friction && !s->work.ledger && !s->work.transform &&
            !s->own_time;
 }
@@ -63,27 +63,29 @@ static size_t next_shown(const nevh__running *r, size_t steps) {
     return next;
 }
 
-/* Unobserved steps, before `until`; *t goes along. */
-static int run_unseen(nevh__running *r, size_t until, double *t) {
-    nevh_stepper *s = r->stepper;
+/* Steps that are taken in one go, if any. */
+static size_t run_on(nevh_work *w, double t0, double h, size_t from,
+                     size_t steps, double q[], double p[]) {
+    if (w->integrator->kernel == &nevh__taylor_kernel)
+        return nevh__taylor_run(w, t0, h, from, steps, q, p);
+    return w->native ? nevh__native_run(w, t0, h, from, steps, q, p) : 0;
+}
+
+int nevh__advance_unseen(nevh_stepper *s, double t0, double h, size_t until,
+                         double q[], double p[]) {
     nevh_work *w = &s->work;
-    double t0 = r->orbit->t0, h = r->h;
     int status = NEVH_OK;
     s->last_h = w->elapsed = h;
-    while (s->taken + 1 < until) {
-        size_t done = w->native
-                          ? nevh__native_run(w, t0, h, s->taken,
-                                             until - 1 - s->taken, r->q, r->p)
-                          : 0;
-        s->taken += done;
-        *t = s->last_t = nevh__next_time(s, t0, h);
-        if (s->taken + 1 == until)
+    while (!status && s->taken < until) {
+        s->taken += run_on(w, t0, h, s->taken, until - s->taken, q, p);
+        s->last_t = nevh__next_time(s, t0, h);
+        if (s->taken == until)
             break;
-        status = nevh__work_step(w, *t, h, r->q, r->p);
+        status = nevh__work_step(w, s->last_t, h, q, p);
         if (status)
             break;
         s->taken++;
-        *t = s->last_t = nevh__next_time(s, t0, h);
+        s->last_t = nevh__next_time(s, t0, h);
     }
     return status;
 }
@@ -91,12 +93,15 @@ static int run_unseen(nevh__running *r, size_t until, double *t) {
 int nevh__run_steps(nevh__running *r, size_t steps, bool ends) {
     nevh_stepper *s = r->stepper;
     double t = nevh__start_time(r);
-    bool hurries = plain(s);
+    bool hurries = nevh__steps_are_plain(s);
     int status = nevh__show(r, ends && s->taken >= steps, t);
     while (!status && s->taken < steps) {
         size_t next = next_shown(r, steps);
-        if (hurries && next > s->taken + 1)
-            status = run_unseen(r, next, &t);
+        if (hurries && next > s->taken + 1) {
+            status = nevh__advance_unseen(s, r->orbit->t0, r->h, next - 1, r->q,
+                                          r->p);
+            t = s->last_t;
+        }
         if (!status)
             status = nevh__advance(s, t, r->h, r->q, r->p);
         if (status)

@@ -37,6 +37,12 @@ struct nevh_stepper {
 int nevh__check_structure(nevh_stepper *);
 /* A step without looking whether the state is the one last returned. */
 int nevh__advance(nevh_stepper *, double t, double h, double q[], double p[]);
+/* True if a step is the kernel's step and nothing else. */
+bool nevh__steps_are_plain(const nevh_stepper *);
+/* Such steps, from number s->taken on until number `until`, which nobody looks at; goes
+   as far as it can. */
+int nevh__advance_unseen(nevh_stepper *, double t0, double h, size_t until,
+                         double q[], double p[]);
 /* Forgets what does not belong to the state; NEVH_OK if the step may begin. */
 int nevh__begin(nevh_stepper *, double t, double h, const double q[],
                 const double p[]);
