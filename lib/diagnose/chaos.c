@@ -33,7 +33,7 @@ static int check(nevh_chaos *c, const nevh_chaos_options *o) {
         return nevh__fail(&c->report, NEVH_EINVAL,
                           "chaos: %zu exponents, but there are %zu",
                           c->exponents, most);
-    if (c->deviations < 2 || c->deviations > most)
+    if (c->deviations + c->of_members < 2 || c->deviations > most)
         return nevh__fail(&c->report, NEVH_EINVAL,
                           "chaos: %zu displacements, but it takes 2 ... %zu",
                           c->deviations, most);
@@ -59,7 +59,9 @@ static int check_scheme(nevh_chaos *c, const nevh_integrator *scheme) {
 
 /* Lengths, and the refusals of the scheme, come from a stepper of H. */
 static int plan_lengths(nevh_chaos *c, const nevh_integrator *scheme) {
-    nevh_stepper *s = nevh_stepper_new(c->system, scheme, &c->options);
+    nevh_options o = c->options;
+    o.native = NEVH_NATIVE_NEVER; /* it takes no steps */
+    nevh_stepper *s = nevh_stepper_new(c->system, scheme, &o);
     if (!s)
         return nevh__no_memory(&c->report);
     if (nevh_stepper_status(s) || nevh_work_find_scale(&s->work))
@@ -142,7 +144,6 @@ static int plan_stepper(nevh_chaos *c, const nevh_system *system, size_t rows,
     nevh_options o = c->options;
     o.width = c->width;
     o.scale = scale;
-    o.native = NEVH_NATIVE_NEVER;
     o.gradient_steps = NULL;
     o.balance = false;
     for (size_t i = 0; i < rows * c->width; i++) {
@@ -281,12 +282,13 @@ static int plan(nevh_chaos *c, const nevh_chaos_options *o) {
     return status ? status : nevh__chaos_begin(c);
 }
 
-nevh_chaos *nevh_chaos_new(const nevh_system *system,
-                           const nevh_chaos_options *o) {
+static nevh_chaos *make(const nevh_system *system, const nevh_chaos_options *o,
+                        bool of_members) {
     nevh_chaos *c = system && o ? nevh__array(1, sizeof *c) : NULL;
     if (!c)
         return NULL;
     c->system = system;
+    c->of_members = of_members;
     c->integrator = o->integrator;
     c->n = system->n;
     c->starts = o->starts ? o->starts : STARTS;
@@ -307,6 +309,16 @@ nevh_chaos *nevh_chaos_new(const nevh_system *system,
     fesetenv(&own);
     c->planned = !status;
     return c;
+}
+
+nevh_chaos *nevh_chaos_new(const nevh_system *system,
+                           const nevh_chaos_options *o) {
+    return make(system, o, false);
+}
+
+nevh_chaos *nevh__chaos_of_members(const nevh_system *system,
+                                   const nevh_chaos_options *o) {
+    return make(system, o, true);
 }
 
 void nevh_chaos_free(nevh_chaos *c) {

@@ -116,6 +116,7 @@ static int take_steps(nevh_chaos *c, double steps) {
                     c->q, c->p, NULL, 0);
 }
 
+/* From the states that are kept. */
 static void step_apart(nevh_chaos *c, double steps) {
     nevh__chaos_batch *x = c->batch;
     columns own = own_columns(c);
@@ -137,18 +138,38 @@ static void step_apart(nevh_chaos *c, double steps) {
     x->taken -= steps;
 }
 
-/* Lanes that were changed since the last step lose their memory first. */
-static void step_together(nevh_chaos *c, double steps) {
+static void pass_steps(nevh_chaos *c, double steps) {
     nevh__chaos_batch *x = c->batch;
-    if (!nevh__begin(c->stepper, time_now(c), c->way * c->dt, c->q, c->p))
-        settle(c);
-    copy_all(c, own_columns(c), x->kept);
-    if (take_steps(c, steps))
-        step_apart(c, steps);
     x->taken += steps;
     for (size_t i = 0; i < c->starts; i++)
         if (x->orbits[i].busy)
             c->start[i].clock.done += steps;
+}
+
+/* As far as all can go.  Returns how many steps. */
+static double step_on(nevh_chaos *c, double steps) {
+    nevh_stepper *s = c->stepper;
+    s->taken = 0;
+    nevh__advance_unseen(s, time_now(c), c->way * c->dt, (size_t)steps, c->q,
+                         c->p);
+    pass_steps(c, (double)s->taken);
+    return (double)s->taken;
+}
+
+/* Lanes that were changed since the last step have lost their memory. */
+static void step_together(nevh_chaos *c, double steps) {
+    bool plain = nevh__steps_are_plain(c->stepper);
+    if (plain)
+        steps -= step_on(c, steps);
+    if (!steps)
+        return;
+    if (!plain &&
+        !nevh__begin(c->stepper, time_now(c), c->way * c->dt, c->q, c->p))
+        settle(c);
+    copy_all(c, own_columns(c), c->batch->kept);
+    if (plain || take_steps(c, steps))
+        step_apart(c, steps);
+    pass_steps(c, steps);
 }
 
 /* Until the next look at a start. */

@@ -59,6 +59,7 @@ typedef struct nevh__chaos_batch nevh__chaos_batch;
 struct nevh_chaos {
     nevh__report report;
     bool planned, tangent;
+    bool of_members; /* it finds what nevh__chaos_member has, and no more */
     char why[400];
     const nevh_system *system;
     const nevh_integrator *integrator;
@@ -143,6 +144,10 @@ typedef struct {
     bool together; /* H reads t: orbits begin together */
     const volatile sig_atomic_t *ending; /* not 0: orbits are left; or NULL */
 } nevh__chaos_jobs;
+/* A nevh_chaos for that alone, which has no verdict; one deviation is enough where
+   SALI is not asked for. */
+nevh_chaos *nevh__chaos_of_members(const nevh_system *,
+                                   const nevh_chaos_options *);
 /* Plans a batch; false if memory is out. */
 bool nevh__chaos_batch_plan(nevh_chaos *);
 void nevh__chaos_batch_free(nevh__chaos_batch *); /* NULL is allowed */

@@ -1,6 +1,7 @@
 /* nevh: orbits and displacements are taken forward, and growth is written down.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/chaos_private.h"
+#include "run/stepper_private.h"
 #include <math.h>
 #include <string.h>
 
@@ -18,10 +19,19 @@ static double *row_p(nevh_chaos *c, size_t k) {
     return c->p + k * c->width;
 }
 
+/* A lane that was changed has no memory. */
+static void forget(nevh_chaos *c, size_t lane) {
+    nevh_stepper *s = c->stepper;
+    for (size_t row = 0; row < s->rows; row++)
+        s->work.memory[row * c->width + lane] = 0;
+}
+
 /* Lanes of vector v: of tangents its own, else on either side of the orbit. */
 void nevh__chaos_put(nevh_chaos *c, size_t start, size_t v) {
     const double *w = c->start[start].w + v * 2 * c->n, *s = c->options.scale;
     size_t n = c->n, first = start * c->lanes, a = first + 2 * v + 1;
+    if (c->tangent)
+        forget(c, first + v);
     for (size_t k = 0; k < n; k++) {
         double x = w[k] * s[k], y = w[n + k] * s[n + k];
         if (c->tangent) {
@@ -100,6 +110,8 @@ static void index_alignment(nevh_chaos *c, nevh__chaos_start *s) {
         minus += pow(c->place[k] - c->place[m + k], 2);
     }
     s->sali = sqrt(fmin(plus, minus));
+    if (c->of_members)
+        return;
     for (size_t v = 0; v < c->deviations; v++) {
         volume *= orthonormalise(c->place, v, m);
         s->gali[v + 1] = volume;
@@ -143,12 +155,18 @@ static double look_at_frame(nevh_chaos *c, size_t start) {
 /* The orbit's lanes are made equal: implicit stages end as their tolerance
    lets them. */
 static void align_orbit(nevh_chaos *c, size_t start) {
-    size_t first = start * c->lanes;
-    for (size_t k = 0; c->tangent && k < c->n; k++)
-        for (size_t i = 1; i < c->lanes; i++) {
-            row_q(c, k)[first + i] = row_q(c, k)[first];
-            row_p(c, c->n + k)[first + i] = row_p(c, c->n + k)[first];
+    size_t first = start * c->lanes, bytes = sizeof(double);
+    for (size_t i = 1; c->tangent && i < c->lanes; i++) {
+        bool same = true;
+        for (size_t k = 0; k < c->n; k++) {
+            double *q = row_q(c, k) + first, *p = row_p(c, c->n + k) + first;
+            same = same && !memcmp(q, q + i, bytes) && !memcmp(p, p + i, bytes);
+            q[i] = q[0];
+            p[i] = p[0];
         }
+        if (!same)
+            forget(c, first + i);
+    }
 }
 
 /* A range that has grown was not that of the motion: crossings of it are not yet
@@ -187,7 +205,8 @@ static double look_at_start(nevh_chaos *c, size_t start, double t0, double t1) {
     nevh__chaos_start *s = &c->start[start];
     double most = 0, before = s->indicator;
     align_orbit(c, start);
-    look_at_orbit(c, start);
+    if (!c->of_members)
+        look_at_orbit(c, start);
     for (size_t v = 0; v < c->deviations; v++) {
         double growth = look_at_deviation(c, start, v);
         if (!isfinite(growth))
@@ -198,7 +217,8 @@ static double look_at_start(nevh_chaos *c, size_t start, double t0, double t1) {
                 add_growth(s, 0, growth);
         }
     }
-    index_alignment(c, s);
+    if (c->deviations > 1)
+        index_alignment(c, s);
     s->indicator = 2 * s->moment / t1;
     s->area += (before + s->indicator) / 2 * (t1 - t0);
     if (c->frame)

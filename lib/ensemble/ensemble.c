@@ -225,9 +225,10 @@ static int plan(nevh_ensemble *e) {
     e->alone = e->width == 1;
     e->together = !autonomous;
     status = nevh__ensemble_stepper(e, system, &o, e->width, &e->stepper);
-    o.native = NEVH_NATIVE_NEVER; /* it steps where others fail, and last */
+    nevh_options spare = o; /* it steps where others fail, and last */
+    spare.native = NEVH_NATIVE_NEVER;
     if (!status)
-        status = nevh__ensemble_stepper(e, system, &o, 1, &e->spare);
+        status = nevh__ensemble_stepper(e, system, &spare, 1, &e->spare);
     e->narrow = e->spare;
     if (!status && e->has_energy)
         status = plan_energy(e, &o);

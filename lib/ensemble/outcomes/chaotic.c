@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STARTS = 16, QUEUE = 256, MOST_NUMBERS = 1 << 14 };
+enum { LANES = 32, QUEUE = 256, MOST_NUMBERS = 1 << 14 };
 
 /* An orbit whose other outcomes are known. */
 typedef struct {
@@ -78,8 +78,9 @@ static bool asks(const nevh_ensemble *e, const nevh__outcome_type *type) {
     return false;
 }
 
-static size_t choose_starts(const nevh_ensemble *e) {
-    size_t starts = nevh__padded(e->options.width ? e->options.width : STARTS);
+static size_t choose_starts(const nevh_ensemble *e, size_t deviations) {
+    size_t own = e->options.width ? e->options.width : LANES / deviations;
+    size_t starts = nevh__padded(own);
     while (!e->options.width && starts > NEVH__LANES &&
            8 * e->n * starts > MOST_NUMBERS)
         starts /= 2;
@@ -87,17 +88,19 @@ static size_t choose_starts(const nevh_ensemble *e) {
 }
 
 static int plan_chaos(nevh_ensemble *e, const nevh_options *options) {
+    size_t deviations = asks(e, &nevh__outcome_sali) ? 2 : 1;
     nevh_chaos_options o = {.integrator = e->options.integrator,
                             .options = options,
                             .t_start = e->options.t_start,
                             .dt = e->options.dt,
-                            .starts = choose_starts(e)};
+                            .starts = choose_starts(e, deviations),
+                            .deviations = deviations};
     nevh__chaotic *x = e->chaotic;
     if (!options->q || !options->p)
         return nevh__fail(&e->report, NEVH_EINVAL,
                           "chaos: lengths are those of H at the state to plan "
                           "at, and H is not finite there: choose another");
-    x->chaos = nevh_chaos_new(e->system, &o);
+    x->chaos = nevh__chaos_of_members(e->system, &o);
     if (nevh_chaos_status(x->chaos))
         return nevh__fail(&e->report, nevh_chaos_status(x->chaos), "%s",
                           nevh_chaos_message(x->chaos));
