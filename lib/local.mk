@@ -232,6 +232,7 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/stability.c \
 	lib/diagnose/variational.c \
 	lib/diagnose/chaos_private.h \
+	lib/diagnose/frequencies_private.h \
 	lib/diagnose/chaos.c \
 	lib/diagnose/chaos_walk.c \
 	lib/diagnose/chaos_starts.c \

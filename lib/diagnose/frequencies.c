@@ -1,21 +1,26 @@
 /* nevh: the frequencies in an orbit.
+
+   Samples are at equal times: cosines and sines of a line are those of a few times,
+   turned by a few angles.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "diagnose/frequencies_private.h"
 #include "system/system_private.h"
 #include <gsl/gsl_fft_real.h>
 #include <math.h>
-#include <nevh/frequencies.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { ORDER = 5, LESS = 3, ROUNDS = 20 };
+enum { ROW = 4 * NEVH__LANES }; /* samples at a time */
 static const double pi = 3.14159265358979323846;
 
-/* Samples of -1 ... 1, in units of half their length. */
+/* Samples of -1 ... 1, in units of half their length.  Rows are padded to vectors, by
+   zeros and samples of no weight. */
 typedef struct {
-    size_t count;
-    double half;           /* the time of half the length */
-    const double *values;  /* given */
-    double *rest, *window; /* count each */
+    size_t count, padded;
+    double half; /* the time of half the length */
+    double *values, *rest, *window, *time;
+    double *rows; /* 1, waves of all lines, what moves change, and one more */
     size_t lines;
     double *w, *cosine, *sine; /* of each line: round the middle */
     double *move, *before;     /* by which w was last off; w before a line */
@@ -24,17 +29,76 @@ typedef struct {
     double *power; /* size */
 } analysis;
 
-static double time_of(const analysis *a, size_t k) {
-    return a->half * (2 * (double)k / (double)(a->count - 1) - 1);
+static double *row_of(const analysis *a, size_t i) {
+    return a->rows + i * a->padded;
+}
+
+/* Turns `count` cosines and sines by one angle. */
+NEVH_SIMD static void turn(size_t count, double angle, const double by_c[],
+                           const double by_s[], double cosine[],
+                           double sine[]) {
+    double c = cos(angle), s = sin(angle);
+    NEVH_LANES(i, count) {
+        cosine[i] = c * by_c[i] - s * by_s[i];
+        sine[i] = s * by_c[i] + c * by_s[i];
+    }
+}
+
+/* The cosines and sines of w t: those of the first eight, turned to the next seven
+   times as many, and so on, so that rounding is that of a few products. */
+static void find_wave(const analysis *a, double w, double cosine[],
+                      double sine[]) {
+    double h = 2 * a->half / (double)(a->count - 1);
+    for (size_t i = 0; i < NEVH__LANES; i++) {
+        cosine[i] = cos(w * a->time[i]);
+        sine[i] = sin(w * a->time[i]);
+    }
+    for (size_t size = NEVH__LANES; size < a->padded; size *= 8)
+        for (size_t at = size; at < 8 * size && at < a->padded; at += size)
+            turn(a->padded - at < size ? a->padded - at : size,
+                 w * ((double)at * h), cosine, sine, cosine + at, sine + at);
+}
+
+NEVH_SIMD static void multiply(size_t count, const double x[], const double y[],
+                               double product[]) {
+    NEVH_LANES(i, count) {
+        product[i] = x[i] * y[i];
+    }
+}
+
+/* sum += factor x */
+NEVH_SIMD static void add_times(size_t count, double factor, const double x[],
+                                double sum[]) {
+    NEVH_LANES(i, count) {
+        sum[i] += factor * x[i];
+    }
+}
+
+/* Sums that do not wait for one another. */
+NEVH_SIMD static double dot(size_t count, const double x[], const double y[]) {
+    nevh__vector sum[ROW / NEVH__IN_VECTOR] = {{0}};
+    double parts[ROW], all = 0;
+    for (size_t k = 0; k < count; k += ROW)
+        for (size_t i = 0; i < ROW / NEVH__IN_VECTOR; i++)
+            sum[i] += *(const nevh__vector *)(x + k + i * NEVH__IN_VECTOR) *
+                      *(const nevh__vector *)(y + k + i * NEVH__IN_VECTOR);
+    memcpy(parts, sum, sizeof parts);
+    for (size_t i = 0; i < ROW; i += NEVH__LANES)
+        all += nevh__sum_lanes(parts + i);
+    return all;
 }
 
 /* (1 + cos(pi x))^order, whose sum with the trapezoidal rule is exact. */
 static void make_window(analysis *a, int order) {
     double sum = 0;
-    for (size_t k = 0; k < a->count; k++) {
-        double x = time_of(a, k) / a->half;
-        a->window[k] = pow(1 + cos(pi * x), order);
+    find_wave(a, pi / a->half, a->window, row_of(a, 0));
+    for (size_t k = 0; k < a->padded; k++) {
+        double factor = k < a->count ? 1 + a->window[k] : 0;
+        a->window[k] = factor;
+        for (int i = 1; i < order; i++)
+            a->window[k] *= factor;
         sum += a->window[k];
+        row_of(a, 0)[k] = 1;
     }
     for (size_t k = 0; k < a->count; k++)
         a->window[k] /= sum;
@@ -42,15 +106,14 @@ static void make_window(analysis *a, int order) {
 
 /* The transform of the rest at w, and half the slope of its square. */
 static double transform(const analysis *a, double w, double *slope) {
-    double re = 0, im = 0, dre = 0, dim = 0;
-    for (size_t k = 0; k < a->count; k++) {
-        double t = time_of(a, k), f = a->window[k] * a->rest[k];
-        double c = f * cos(w * t), s = f * sin(w * t);
-        re += c;
-        im -= s;
-        dre -= t * s;
-        dim -= t * c;
-    }
+    double *weighted = row_of(a, 3 * a->lines + 1), *c = weighted + a->padded,
+           *s = c + a->padded;
+    find_wave(a, w, c, s);
+    multiply(a->padded, a->window, a->rest, weighted);
+    double re = dot(a->padded, weighted, c), im = -dot(a->padded, weighted, s);
+    multiply(a->padded, weighted, a->time, weighted);
+    double dre = -dot(a->padded, weighted, s);
+    double dim = -dot(a->padded, weighted, c);
     *slope = re * dre + im * dim;
     return re * re + im * im;
 }
@@ -118,26 +181,32 @@ static double search(analysis *a) {
 
 /* The residual of all lines but `but`. */
 static void take_off(analysis *a, size_t but) {
-    for (size_t k = 0; k < a->count; k++) {
-        double t = time_of(a, k), sum = a->values[k] - a->mean;
-        for (size_t i = 0; i < a->lines; i++)
-            if (i != but)
-                sum -= a->cosine[i] * cos(a->w[i] * t) +
-                       a->sine[i] * sin(a->w[i] * t);
-        a->rest[k] = sum;
+    double *c = row_of(a, 3 * a->lines + 1), *s = c + a->padded;
+    for (size_t k = 0; k < a->count; k++)
+        a->rest[k] = a->values[k] - a->mean;
+    for (size_t i = 0; i < a->lines; i++) {
+        if (i == but)
+            continue;
+        find_wave(a, a->w[i], c, s);
+        add_times(a->padded, -a->cosine[i], c, a->rest);
+        add_times(a->padded, -a->sine[i], s, a->rest);
     }
 }
 
 /* 1, then cosine and sine of each line, then what the line changes by where its
-   frequency does, in units of 1/half: in f, `most` of them. */
-static void basis(const analysis *a, double t, size_t most, double f[]) {
-    size_t n = 2 * a->lines + 1;
-    f[0] = 1;
-    for (size_t i = 0; i < a->lines; i++) {
-        double c = f[2 * i + 1] = cos(a->w[i] * t);
-        double s = f[2 * i + 2] = sin(a->w[i] * t);
-        if (n < most)
-            f[n + i] = t / a->half * (a->sine[i] * c - a->cosine[i] * s);
+   frequency does, in units of 1/half: rows, n of them. */
+static void find_basis(const analysis *a, size_t n) {
+    size_t lines = a->lines, padded = a->padded;
+    for (size_t i = 0; i < lines; i++) {
+        double *c = row_of(a, 2 * i + 1), *s = c + padded;
+        find_wave(a, a->w[i], c, s);
+        if (n == 2 * lines + 1)
+            continue;
+        double *move = row_of(a, 2 * lines + 1 + i);
+        memset(move, 0, padded * sizeof *move);
+        add_times(padded, a->sine[i] / a->half, c, move);
+        add_times(padded, -a->cosine[i] / a->half, s, move);
+        multiply(padded, a->time, move, move);
     }
 }
 
@@ -169,18 +238,16 @@ static void solve(double m[], double b[], size_t n) {
    together with changes of frequencies to first order, which are in it then. */
 static bool fit(analysis *a, double moves[]) {
     size_t n = (moves ? 3 : 2) * a->lines + 1;
-    double *m = nevh__array(n * n + 2 * n, sizeof *m);
+    double *m = nevh__array(n * n + n, sizeof *m);
     if (!m)
         return false;
-    double *b = m + n * n, *f = b + n;
-    for (size_t k = 0; k < a->count; k++) {
-        basis(a, time_of(a, k), n, f);
-        for (size_t i = 0; i < n; i++) {
-            double part = a->window[k] * f[i];
-            b[i] += part * a->values[k];
-            for (size_t j = 0; j <= i; j++)
-                m[i * n + j] += part * f[j];
-        }
+    double *b = m + n * n, *part = row_of(a, n);
+    find_basis(a, n);
+    for (size_t i = 0; i < n; i++) {
+        multiply(a->padded, a->window, row_of(a, i), part);
+        b[i] = dot(a->padded, part, a->values);
+        for (size_t j = 0; j <= i; j++)
+            m[i * n + j] = dot(a->padded, part, row_of(a, j));
     }
     solve(m, b, n);
     a->mean = b[0];
@@ -287,18 +354,23 @@ static bool find_lines(analysis *a, size_t most) {
 
 static bool open(analysis *a, double h, size_t count, const double values[],
                  size_t most) {
-    *a = (analysis){.count = count,
-                    .half = h * (double)(count - 1) / 2,
-                    .values = values,
-                    .size = 1};
+    *a = (analysis){
+        .count = count, .half = h * (double)(count - 1) / 2, .size = 1};
     while (a->size < 2 * count)
         a->size *= 2;
-    a->rest = nevh__array(2 * count, sizeof(double));
+    a->padded = (count + ROW - 1) / ROW * ROW;
+    a->rest = nevh__array((3 * most + 8) * a->padded, sizeof(double));
     a->w = nevh__array(5 * most, sizeof(double));
     a->power = nevh__array(a->size, sizeof(double));
     if (!a->rest || !a->w || !a->power)
         return false;
-    a->window = a->rest + count;
+    a->window = a->rest + a->padded;
+    a->time = a->window + a->padded;
+    a->values = a->time + a->padded;
+    a->rows = a->values + a->padded;
+    memcpy(a->values, values, count * sizeof *values);
+    for (size_t k = 0; k < a->padded; k++)
+        a->time[k] = a->half * (2 * (double)k / (double)(count - 1) - 1);
     a->cosine = a->w + most;
     a->sine = a->cosine + most;
     a->move = a->sine + most;
@@ -394,20 +466,44 @@ static int by_amplitude(const void *a, const void *b) {
     return (x < y) - (x > y);
 }
 
-int nevh_frequencies(double h, size_t count, const double values[], size_t most,
-                     nevh_spectral_line lines[], size_t *found) {
-    analysis a;
-    if (!found || !lines || !values || count < NEVH_FEWEST_SAMPLES ||
-        !(h > 0) || !most)
+/* Looks for samples of which there are no lines. */
+static int check(double h, size_t count, const double values[], size_t most) {
+    if (!values || count < NEVH_FEWEST_SAMPLES || !(h > 0) || !most)
         return NEVH_EINVAL;
-    *found = 0;
     for (size_t k = 0; k < count; k++)
         if (!isfinite(values[k]))
             return NEVH_EDOM;
+    return NEVH_OK;
+}
+
+int nevh_frequencies(double h, size_t count, const double values[], size_t most,
+                     nevh_spectral_line lines[], size_t *found) {
+    analysis a;
+    int status = lines && found ? check(h, count, values, most) : NEVH_EINVAL;
+    if (found)
+        *found = 0;
+    if (status)
+        return status;
     bool good = open(&a, h, count, values, most) && find_lines(&a, most) &&
                 describe(&a, h, lines, found);
     close(&a);
     if (good)
         qsort(lines, *found, sizeof *lines, by_amplitude);
     return good ? NEVH_OK : NEVH_ENOMEM;
+}
+
+double nevh__main_frequency(double h, size_t count, const double values[],
+                            size_t most) {
+    analysis a;
+    double w = NAN, largest = -1;
+    if (check(h, count, values, most))
+        return NAN;
+    bool good = open(&a, h, count, values, most) && find_lines(&a, most);
+    for (size_t i = 0; good && i < a.lines; i++)
+        if (amplitude(&a, i) > largest) {
+            largest = amplitude(&a, i);
+            w = a.w[i];
+        }
+    close(&a);
+    return w;
 }

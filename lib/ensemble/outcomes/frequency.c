@@ -1,5 +1,6 @@
 /* nevh: the outcome frequency(F): of the largest line in the spectrum of a formula.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "diagnose/frequencies_private.h"
 #include "ensemble/ensemble_private.h"
 #include <math.h>
 
@@ -40,18 +41,13 @@ static void begin(const nevh__observation *at, void *record) {
 static void end(const nevh__observation *at, const void *record,
                 double result[]) {
     samples kept = *(const samples *)record;
-    nevh_spectral_line lines[LINES];
-    size_t found = 0, count;
+    size_t count;
     double h;
     nevh_spectral_samples_straighten(kept, at->decl->modulus);
     const double *values = nevh_spectral_samples_values(kept, &count, &h);
-    int status = nevh_frequencies(h, count, values, LINES, lines, &found);
-    *result = NAN;
-    if (status || !found)
-        return;
-    double turns = lines[0].frequency * h * (double)(count - 1) / (2 * pi);
-    if (!(turns < 1))
-        *result = lines[0].frequency;
+    double w = nevh__main_frequency(h, count, values, LINES);
+    double turns = w * h * (double)(count - 1) / (2 * pi);
+    *result = turns >= 1 ? w : NAN;
 }
 
 const nevh__outcome_type nevh__outcome_frequency = {
