@@ -59,8 +59,8 @@ static nevh_stepper *stepper_of(const nevh_system *system, choice *c) {
 
 /* The cost of a time of `until`; INFINITY where it is beyond `most`, or where the
    orbit ends. */
-static double cost_of(const nevh_finer *f, nevh_stepper *s, double dt,
-                      double until, double most) {
+static double cost_of(nevh_finer *f, nevh_stepper *s, double dt, double until,
+                      double most) {
     const nevh_finer_question *a = &f->question;
     size_t n = f->system->n, steps = (size_t)ceil(until / fabs(dt) - 1e-9);
     double *z = nevh__array(2 * n, sizeof *z), cost = 0;
@@ -76,6 +76,8 @@ static double cost_of(const nevh_finer *f, nevh_stepper *s, double dt,
         cost = spent_by(s, i + 1);
     }
     free(z);
+    if (status == NEVH_ENOMEM)
+        nevh__fail(&f->report, status, "out of memory");
     return status || cost > most ? INFINITY : cost;
 }
 
@@ -143,7 +145,7 @@ static bool choose(nevh_finer *f, nevh_finer_kind kind, double until,
 static bool choose_any(nevh_finer *f, double until, double whole) {
     static const nevh_finer_kind kinds[] = {
         NEVH_FINER_TAYLOR, NEVH_FINER_ADAPTIVE, NEVH_FINER_STEPS};
-    for (size_t i = 0; i < 6; i++) {
+    for (size_t i = 0; i < 6 && f->report.status != NEVH_ENOMEM; i++) {
         nevh_finer_kind kind = kinds[i % 3];
         bool free = i >= 3 || kind == NEVH_FINER_STEPS;
         if (f->question.kinds & kind &&

@@ -3,6 +3,7 @@
 #include "memory.h"
 #include "expression/tape_private.h"
 #include <math.h>
+#include <nevh/confirm.h>
 #include <nevh/gsl.h>
 #include <nevh/transform.h>
 
@@ -204,6 +205,19 @@ static int make_closeness(const setting *a) {
     return status;
 }
 
+/* Any kind; none takes the place of one that memory has no room for. */
+static int make_finer(const setting *a) {
+    nevh_finer *f = nevh_finer_new(
+        a->system, &(nevh_finer_question){.integrator = a->scheme,
+                                          .options = &a->options,
+                                          .dt = 0.1,
+                                          .steps = 20});
+    int status = nevh_finer_status(f);
+    strcpy(text, f ? nevh_finer_message(f) : "out of memory");
+    nevh_finer_free(f);
+    return f ? status : (int)NEVH_ENOMEM;
+}
+
 /* To an end between two steps; a state far from the stepper's own. */
 static int run_until(const setting *a) {
     double q[] = {0.3, 0.5}, p[] = {0.7, 1.1};
@@ -312,6 +326,18 @@ TEST(defects) {
                  .stepper = nevh_stepper_new(s, nevh_gauss4, NULL)};
     ck_assert_uint_ge(starve(find_defects, &a), 4);
     nevh_stepper_free(a.stepper);
+    nevh_system_free(s);
+}
+
+TEST_EACH(finer_runs, 2) {
+    const nevh_integrator *schemes[] = {nevh_gauss4, nevh_dopri5};
+    nevh_system *s = pendulums();
+    setting a = {.system = s, .scheme = schemes[_i]};
+    a.options = (nevh_options){.gradient = nevh_exact,
+                               .tolerance = tolerance_for(a.scheme),
+                               .q = start_q,
+                               .p = start_p};
+    ck_assert_uint_ge(starve(make_finer, &a), 15);
     nevh_system_free(s);
 }
 

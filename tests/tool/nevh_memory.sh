@@ -40,10 +40,13 @@ unset STARVE_COUNT
 grep -q '^[0-9][0-9]*$' $work/err ||
     exits_untested "allocations of nevh do not pass through LD_PRELOAD"
 
-# starves PLACES ARGUMENT...: at so many places, from the first to the last.
+# starves PLACES ARGUMENT...: at so many places, from the first, or from percentage
+# $from, to the last.
+from=0
 starves() {
     places=$1
     shift
+    rm -f $work/made*
     STARVE_COUNT=1
     export STARVE_COUNT
     starve 0 '' "$@"
@@ -52,14 +55,19 @@ starves() {
     count=$(tail -n 1 $work/err)
     test "$SLOW" = yes && places=$((20 * places))
     steady $work/out >$work/right
-    at=1
+    made=$(ls $work/made* 2>/dev/null | head -n 1)
+    test -z "$made" || steady $made >$work/whole
+    at=$((1 + from*count/100))
+    places=$((places*100/(100 - from)))
     while test $at -le $count; do
         for on in '' on; do
             rm -f $work/made*
             starve $at "$on" "$@"
             case $code in
             0) steady $work/out | cmp -s - $work/right || test -z "$same" ||
-                fails "prints something else" ;;
+                fails "prints something else"
+                test -z "$same" || test -z "$made" || steady $made |
+                    cmp -s - $work/whole || fails "writes something else" ;;
             1 | 2) grep -q '^out of memory' $work/err && fails "does not say who"
                 cat $work/out $work/err | grep -Eiq 'memory|cannot' ||
                 { fails "does not say why (exit status $code)"
@@ -76,6 +84,7 @@ starves() {
 same=yes
 starves 12 run pendulum --t-end 1
 starves 8 run figure-eight --t-end 1 --samples 5 --format json -o $work/made.json
+starves 36 run pendulum --t-end 1 --samples 3 --plot $work/made.svg
 starves 6 section henon-heiles --t-end 20
 starves 6 new $work/made.nevh --from pendulum
 starves 5 list integrators
@@ -87,6 +96,9 @@ starves 2 sweep pendulum --vary 'phi=range(0.1,3,6)' --t-end 5 --threads 1 \
     --outcomes energy_error -o $work/made.npy
 head -n 30 "$srcdir/scenes/pendulum-filmed.csv" >$work/data.csv
 starves 2 fit pendulum-filmed --data $work/data.csv --vary l --format csv
+from=90
+starves 60 fit pendulum-filmed --data $work/data.csv --vary l --format csv
+from=0
 starves 4 reference double-pendulum --t-end 1
 starves 4 chaos henon-heiles --t-end 20
 starves 4 frequencies henon-heiles --t-end 100

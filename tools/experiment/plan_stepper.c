@@ -82,7 +82,9 @@ nevh_finer *plan_finer(const plan *p, const char *name, nevh_finer_kind kind) {
                                    .steps =
                                        (size_t)fmax(plan_steps(p, p->dt[0]), 1),
                                    .kinds = kind};
-    return tool_owned(nevh_finer_new(p->system, &q));
+    nevh_finer *f = tool_owned(nevh_finer_new(p->system, &q));
+    tool_status(nevh_finer_status(f));
+    return f;
 }
 
 /* The first from there on that fits; NULL: none does. */

@@ -11,9 +11,7 @@ static const double a_few = 4; /* steps of rows, to one of the reference */
 /* Why there is no reference, or NULL. */
 static char *refusal(const plan *p, const char *name) {
     const char *text = nevh_reference_text(p->reference);
-    if (!p->reference)
-        return text_print("out of memory");
-    if (nevh_reference_status(p->reference))
+    if (tool_status(nevh_reference_status(p->reference)))
         return text_print("%s", nevh_reference_message(p->reference));
     if (name && strcmp(name, "exact") == 0 && strncmp(text, "exact", 5) != 0)
         return text_print("no exact solution of this H is known");
@@ -40,7 +38,7 @@ make_reference(const plan *p, const nevh_integrator *scheme, double end) {
     nevh_reference *made =
         nevh_reference_with(p->system, &o, p->run->t_start, end, p->q, p->p);
     free(kind);
-    return made;
+    return tool_owned(made);
 }
 
 int plan_reference(plan *p, double end) {

@@ -302,11 +302,8 @@ static int confirm_by(frequencies_job *j, const char *integrator,
     char *why = s ? NULL : text_print("%s", nevh_finer_message(f));
     bool ran = s && !sample(j, s, dt, NULL, &why);
     int status = TOOL_OK;
-    if (!ran &&
-        (s ? nevh_stepper_status(s) : nevh_finer_status(f)) == NEVH_ENOMEM) {
-        tool_refuse("%s: errors of %s: out of memory", p->name, integrator);
-        j->worst = TOOL_FAILED;
-    }
+    if (s)
+        tool_status(nevh_stepper_status(s));
     if (!ran)
         list_print(
             &j->words, "%s: errors are not known: %s it fails: %s", integrator,

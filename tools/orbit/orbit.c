@@ -123,7 +123,7 @@ size_t orbit_follow_reference(orbit *o, nevh_reference *r, size_t columns,
     o->p = tool_allocate(n, sizeof *o->p);
     for (size_t i = 0; i <= STATES; i++) {
         double elapsed = span * (double)i / STATES;
-        if (nevh_reference_state_after(r, elapsed, q, p))
+        if (tool_status(nevh_reference_state_after(r, elapsed, q, p)))
             break;
         take(&f, begin + elapsed, q, p);
     }
