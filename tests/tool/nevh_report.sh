@@ -175,6 +175,24 @@ grep -q 'cannot be written: is the disk full' $work/said && grep -q '^status 2' 
     { fails "does not say that the disk is full"; cat $work/said; }
 test ! -e $work/none.html || fails "writes a page without room"
 
+# Nor where some parts have room: a picture, or a message, is not left out in silence.
+"$nevh" report oscillator -o $work/all.html --t-end 1 --dt 0.1 2>/dev/null
+pictures=$(grep -c '<svg' $work/all.html)
+for blocks in 8 12 16 24 32 48; do
+    (
+        trap '' XFSZ
+        ulimit -f $blocks
+        "$nevh" report oscillator -o /dev/stdout --t-end 1 --dt 0.1 2>$work/err
+        echo "status $?"
+    ) | cat >$work/said
+    case $(tail -n 1 $work/said) in
+    'status 0') test "$(grep -c '<svg' $work/said)" = "$pictures" ||
+        fails "leaves out what files of $blocks blocks have no room for" ;;
+    'status 2') grep -q 'is the disk full' $work/err || fails "does not say why" ;;
+    *) fails "ends otherwise: $(cat $work/err)" ;;
+    esac
+done
+
 # An orbit without any energy error has a report, though no curve of it.
 printf '[coordinates]\nx = 0\n[effects]\nK = p_x^2/2\nV = x^2/2\n[run]
 t_end = 2\ndt = 0.1\nintegrators = verlet\n' >$work/rest.nevh

@@ -202,6 +202,12 @@ FILE *regular_open(const char *name) {
     return NULL;
 }
 
+static bool failed;
+
+bool output_failed(void) {
+    return failed;
+}
+
 int output_open(output *o, const char *name) {
     *o = (output){.stream = stdout};
     if (!name)
@@ -215,6 +221,7 @@ int output_open(output *o, const char *name) {
         o->stream = fopen(o->name, "we");
     if (o->stream)
         return TOOL_OK;
+    failed = true;
     tool_refuse("%s cannot be written: %s", name, strerror(errno));
     forget(o);
     return TOOL_USAGE;
@@ -298,6 +305,7 @@ int output_close(output *o, int status) {
         remember(o->made, NULL);
         wrong = rename(o->temporary, o->name);
     }
+    failed |= wrong;
     if (wrong)
         status = tool_refuse("%s cannot be written: %s",
                              o->name ? o->name : "the output",

@@ -356,6 +356,9 @@ int output_check(const char *name);
 /* Renames, or, unless it is to be kept, removes.  Returns `status`, or
    TOOL_USAGE when writing failed. */
 int output_close(output *, int status);
+
+/* True if an output of the process could not be made or written. */
+bool output_failed(void);
 /* Opens what -o says, prints, closes. */
 int output_page(const options *, const page *, int status);
 void page_print(const page *, const options *, FILE *);

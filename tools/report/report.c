@@ -16,6 +16,7 @@ typedef struct {
     size_t parts;                                      /* so far */
     list contents; /* of a scene: numbers and titles of its parts */
     int terminal;  /* stderr, where messages of a part go to a file; else -1 */
+    bool full;     /* a part, or its messages, could not be written */
 } report_job;
 
 enum { STARTS = 2, ANIMATION_BYTES = 100000 };
@@ -107,6 +108,8 @@ static int run_heard(report_job *w, const command *c, const options *o) {
         w->terminal = kept;
         status = c->run(o);
         fflush(stderr);
+        w->full |= ferror(stderr);
+        clearerr(stderr);
         dup2(kept, STDERR_FILENO);
         w->terminal = -1;
     }
@@ -114,6 +117,7 @@ static int run_heard(report_job *w, const command *c, const options *o) {
         fclose(heard);
     if (kept >= 0)
         close(kept);
+    w->full |= status == -1 || output_failed();
     return status;
 }
 
@@ -144,10 +148,6 @@ static report_part make_part(report_job *w, const kind_of_part *kind,
     part.picture = text_read(w->picture);
     part.narrow = text_read(w->narrow);
     part.messages = text_read(w->messages);
-    if (part.status == TOOL_USAGE && !part.messages) /* they had no room */
-        part.messages = text_print("nevh: %s: parts of the report cannot be "
-                                   "written: is the disk full?\n",
-                                   w->folder);
     part.command =
         command_of(&(report_job){.given = &o}, scene, kind->arguments);
     if (o.vary.item != w->given->vary.item)
@@ -224,9 +224,7 @@ static bool has_verdict(const report_part *part) {
 /* The comparison is what a report is for: without it there is none. */
 static int refuse(const char *scene, const report_part *part) {
     fputs(part->messages ? part->messages : "", stderr);
-    tool_refuse(part->html ? "%s: no report, since no integrator has a row "
-                             "with numbers"
-                           : "%s: no report, since there is no comparison",
+    tool_refuse("%s: no report, since no integrator has a row with numbers",
                 scene);
     return part->status == TOOL_FAILED ? TOOL_FAILED : TOOL_USAGE;
 }
@@ -239,8 +237,12 @@ static int add_part(report_job *w, const kind_of_part *kind, char *name,
     report_part part = kind->of ? make_part(w, kind, name, v->scene)
                                 : make_animation(w, kind, name);
     part.variant = v->name;
-    if (kind->of == &compare_command &&
-        (part.status == TOOL_USAGE || !has_verdict(&part)))
+    if (w->full)
+        status = tool_refuse("%s: parts of the report cannot be written: is "
+                             "the disk full?",
+                             w->folder);
+    else if (kind->of == &compare_command &&
+             (part.status == TOOL_USAGE || !has_verdict(&part)))
         status = refuse(name, &part);
     else if (part.command) {
         if (kind->of == &compare_command)
