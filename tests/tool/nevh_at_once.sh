@@ -12,9 +12,11 @@ mkdir $TMPDIR
 long='--t-end 20000 --gradient exact --integrators verlet --dt 0.1'
 
 # four PROCESS ARGUMENT...: PROCESS: who is killed (1), or 0.
+tried=
 four() {
     killed=$1
     shift
+    tried="$tried $1"
     command="four times $*"
     rm -rf $XDG_CACHE_HOME
     for k in 1 2 3 4; do
@@ -75,6 +77,11 @@ four 0 chaos henon-heiles --t-end 100
 four 0 frequencies pendulum --t-end 200
 four 0 reference pendulum --t-end 5
 four 0 list scenes
+four 0 list integrators
+four 0 list gradients
+four 0 list models
+four 0 help
+four 0 help compare
 four 0 hard 'pendulum at rest' --integrators verlet,gauss4
 csv export pendulum --integrators verlet --dt 0.1
 csv section henon-heiles --t-end 300
@@ -115,6 +122,21 @@ four 0 run pendulum --t-end 5 --samples 3 --plot $work/p.svg
 four 0 portrait pendulum --t-end 10 --plot $work/p.svg
 four 0 flow pendulum --t-end 5 --plot $work/p.svg
 
+# Worksheets, into one folder, and their answers.
+if (. "$srcdir/tests/python/find_python.sh") >/dev/null; then
+    . "$srcdir/tests/python/find_python.sh"
+    PYTHON=$python
+    export PYTHON
+    "$nevh" sheet 1 --for Ada --key 7 -o $work/once >/dev/null
+    four 0 sheet 1 --for Ada --key 7 -o $work/sheets
+    diff -r $work/sheets $work/once >/dev/null || fails "makes other sheets"
+    "$nevh" sheet 1 --for Ada --key 7 --answers --format csv |
+        cut -d, -f1-3 | sed '1s/.*/name,task,answer/' >$work/answers.csv
+    four 0 mark $work/answers.csv --key 7
+else
+    tried='sheet mark'
+fi
+
 four 1 run pendulum $long --samples 2
 four 1 compare pendulum $long
 
@@ -133,6 +155,14 @@ compiler 'sleep 20 & exec $C_COMPILER "$@"'
 four 0 run pendulum $long --samples 2 --quiet
 compiler 'while :; do sleep 1; done'
 four 0 run pendulum $long --samples 2 --quiet
+# No command is left out.
+command='four times'
+for name in $("$nevh" help | sed -n 's/^  nevh \([a-z]*\).*/\1/p'); do
+    case " new $tried " in
+    *" $name "*) ;;
+    *) test "$name" = page || fails "$name is not tried" ;;
+    esac
+done
 if test "$SLOW" = yes; then
     four 0 compare pendulum --t-end 20000 --gradient exact
     four 0 sweep pendulum --vary 'phi = range(0.1, 3, 8)' --t-end 50000
