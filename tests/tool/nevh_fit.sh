@@ -273,4 +273,19 @@ has '^# integrator: blanes-moan4'
 has '^# .*dt = 0\.01'
 has '^# .*m=2, g=9\.5'
 has '^4,'
+
+# Points that lie farther apart than half a period, 0.497 here, do not tell one
+# frequency from another.
+printf '%s\n' '[parameters]' 'k = 40' '[coordinates]' 'x = 1' '[effects]' 'K = p_x^2/2' \
+    'V = k*x^2/2' '[run]' 't_end = 20' 'dt = 0.02' 'integrators = gauss8' >$work/swing.nevh
+for gap in 0.45 0.55; do
+    exits 0 run $work/swing.nevh --at "$(awk "BEGIN {
+        for (t = $gap; t < 20; t += $gap) printf \"%s%.6g\", n++ ? \",\" : \"\", t }")" \
+        --format csv --quiet
+    cut -d, -f 1,2 $work/out >$work/swing.csv
+    exits 0 fit $work/swing.nevh --data $work/swing.csv --vary k --set k=39.8
+    cp $work/out $work/gap.$gap
+done
+grep -q 'half a period' $work/gap.0.55 || fails "does not say that points are too few"
+grep -q 'half a period' $work/gap.0.45 && fails "says that enough points are too few"
 exit $status

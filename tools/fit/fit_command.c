@@ -310,6 +310,7 @@ static void add_words(job *j, const options *o, list *words) {
     fit_interval_words(f, words);
     judge(j, words);
     bool alike = fit_residual_words(f, f->residual, words);
+    fit_sparse_words(&j->fit, words);
     j->poor = fit_leaves(f, alike ? 0.5 : 1, f->chi_square);
     add_next(j, o, words);
 }

@@ -211,3 +211,95 @@ bool fit_orbit(fitting *f, const double x[], double residual[]) {
     nevh_stepper_free(s);
     return good;
 }
+
+/* Turns of columns: they go back by more than a hundredth of the measured range. */
+typedef struct {
+    quantities columns;
+    double *value, *extreme, *width; /* columns each */
+    int *way;
+    size_t *turns;
+} turning;
+
+static int count_turns(void *data, double t, const double q[],
+                       const double p[]) {
+    turning *w = data;
+    columns_values(&w->columns, t, q, p, w->value);
+    for (size_t k = 0; k < w->columns.count; k++) {
+        double moved = w->value[k] - w->extreme[k];
+        int way = moved > 0 ? 1 : -1;
+        if (fabs(moved) <= w->width[k] && way != w->way[k])
+            continue;
+        w->turns[k] += way == -w->way[k];
+        w->way[k] = way;
+        w->extreme[k] = w->value[k];
+    }
+    return TOOL_OK;
+}
+
+static void turning_begin(turning *w, const fitting *f) {
+    static const double part = 0.01;
+    const measured *m = f->data;
+    size_t n = m->columns;
+    *w = (turning){.columns = columns_new(f->plan)};
+    w->value = tool_allocate(3 * n, sizeof *w->value);
+    w->extreme = w->value + n, w->width = w->extreme + n;
+    w->way = tool_allocate(n, sizeof *w->way);
+    w->turns = tool_allocate(n, sizeof *w->turns);
+    for (size_t k = 0; k < n; k++) {
+        double low = m->value[k], high = low;
+        columns_add(&w->columns, m->names.item[k]);
+        for (size_t i = 0; i < m->points; i++) {
+            low = fmin(low, m->value[i * n + k]);
+            high = fmax(high, m->value[i * n + k]);
+        }
+        w->extreme[k] = low;
+        w->width[k] = part * (high - low);
+    }
+}
+
+static void turning_end(turning *w) {
+    columns_free(&w->columns);
+    free(w->value);
+    free(w->way);
+    free(w->turns);
+}
+
+/* All steps of the orbit with the numbers that were found. */
+static bool turn(fitting *f, turning *w) {
+    static const volatile sig_atomic_t no_signal;
+    for (size_t i = 0; i < f->count; i++)
+        if (assign(f, &f->item[i], f->item[i].value))
+            return false;
+    nevh_stepper *s =
+        renew(f->plan) ? NULL : plan_stepper(f->plan, f->now.integrator);
+    bool good = s && !nevh_stepper_status(s);
+    f->plan->t_end = f->data->t[f->data->points - 1];
+    if (good) {
+        trajectory *r = trajectory_new(
+            f->plan, f->now.integrator, s,
+            &(row_times){.by = BY_STEPS, .every = 1},
+            (row_output){.take = count_turns, .data = w, .mute = true});
+        trajectory_follow(r, &(trajectory_watch){.signal = &no_signal});
+        trajectory_free(r);
+    }
+    nevh_stepper_free(s);
+    return good;
+}
+
+void fit_sparse_words(fitting *f, list *words) {
+    const measured *m = f->data;
+    turning w;
+    turning_begin(&w, f);
+    bool followed = turn(f, &w);
+    for (size_t k = 0; followed && k < m->columns; k++)
+        if (w.turns[k] >= m->points) {
+            list_print(words,
+                       "%s turns %zu times between %zu points, which lie "
+                       "farther apart than half a period: an orbit of another "
+                       "frequency may pass through them as well.  Take more "
+                       "points, or begin where the frequency is known.",
+                       m->names.item[k], w.turns[k], m->points);
+            break;
+        }
+    turning_end(&w);
+}

@@ -73,6 +73,8 @@ int fit_begin(fitting *, const options *);
    these values, in units of their scales.
    returns  whether there is one; else `why` says more */
 bool fit_orbit(fitting *, const double x[], double residual[]);
+/* Warns where the orbit that was found turns between the points. */
+void fit_sparse_words(fitting *, list *words);
 
 /* fit_scheme.c: orbits of smaller errors than those of now.
    level    from 0 on: dop853, then its smaller tolerances; with `stepwise`, shorter
