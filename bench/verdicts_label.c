@@ -70,7 +70,8 @@ static shape shape_of(const long_run *r, const long_run *own) {
     size_t part = (size_t)(WINDOWS / own->length);
     s.own = largest(own, 0, part);
     s.own_nearest = nearest(own, part / 2, part);
-    s.own_allowed = 16 * own->noise + 8 * own->wandering;
+    s.own_allowed = own->own_allowed > 0 ? (double)own->own_allowed
+                                         : 16 * own->noise + 8 * own->wandering;
     s.allowed = 16 * r->noise + 8 * r->wandering * sqrt(r->length);
     fit(r, &s);
     return s;
@@ -168,8 +169,7 @@ static bool grows_at_once(const long_run *r) {
 /* What the row's own run shows, whatever comes of it later. */
 static bool is_rounding(const long_run *r) {
     shape s = shape_of(r, r);
-    return s.own <= s.own_allowed && s.largest < above(r) &&
-           s.own_allowed < 1e-3;
+    return s.own <= s.own_allowed && s.own < above(r) && s.own_allowed < 1e-3;
 }
 
 static bool grows(label is) {

@@ -28,6 +28,8 @@ typedef struct {
     bool afforded;    /* or the rest says nothing but `work` */
     bool prepared;    /* to be judged by, in memory alone */
     window window[WINDOWS];
+    float
+        own_allowed; /* of rounding, in as much as the row runs; 0: not known */
 } long_run;
 
 typedef struct {

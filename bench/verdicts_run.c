@@ -153,7 +153,7 @@ static bool integrate(trial *f, double work) {
         double t = start + (double)i * s->dt, next = t + s->dt;
         if (i % every == 0)
             probe_noise(f, t, i * WINDOWS / all);
-        if (i == 0 ||
+        if (i == 0 || i + 1 == steps ||
             (i % (every * PROBES * (WINDOWS / 8)) == 0 && s->plan->n < 100))
             probe_wandering(f, t);
         if (nevh_stepper_apply(s->stepper, t, s->dt, f->q, f->p) ||
@@ -169,6 +169,8 @@ static bool integrate(trial *f, double work) {
         at = place;
         add(r, place, e, samples++);
         r->reached = (double)(i + 1) / (double)steps;
+        if (i + 1 == steps)
+            r->own_allowed = (float)(16 * r->noise + 8 * r->wandering);
         if (i < steps && (i + 1) % check == 0)
             r->work = work_of(f, before, i + 1);
         r->afforded = r->work * r->spans <= work;
@@ -221,6 +223,7 @@ static void rescale(const subject *s, long_run *r) {
         r->window[i].met *= factor;
     }
     r->effect *= factor, r->noise *= factor, r->wandering *= factor;
+    r->own_allowed *= factor;
 }
 
 /* An orbit that the scene ends on its way to larger energies is judged by what

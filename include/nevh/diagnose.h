@@ -153,7 +153,7 @@ typedef struct {
                  times >= 16, BOUNDED where the error comes back and is level,
                  else UNSTABLE
    max at rounding: BOUNDED, or where it grows RANDOM_WALK, once times >= 16;
-                 never DRIFTS; of LOSES UNDECIDED, for the drift is hidden
+                 never DRIFTS; UNDECIDED above limit, and of LOSES: it hides more
    LOSES         DRIFTS where the slope is above four times its error, or the
                  error never comes back
    KEEPS, OPEN, ROUGH

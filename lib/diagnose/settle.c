@@ -58,17 +58,21 @@ typedef struct {
 } longer_run;
 
 /* True if the error is level over so many lengths: a random walk would be above
-   that many times the run's own error by now, at least half of the time.  Also true
-   if the longer run explored more, and is level since. */
+   that many times the run's own error by now, at least half of the time.  A large
+   one may be that of chaos among long steps, and is level where it stays as it is.
+   Also true if the longer run explored more, and is level since. */
 static bool is_confirmed(const longer_run *l, double times) {
     static const double slow = 2.5, level = 1.3, few = 16, many = 256;
+    static const double coarse = 0.03;                    /* of the limit */
     static const double ending = 0.2, ended_before = 0.5; /* powers of t */
     const nevh_energy_report *r = &l->report;
     bool ended = r->theory == NEVH_THEORY_KEEPS && r->rate[0] < ending &&
                  r->rate[1] < ended_before &&
                  r->last_fifth <= level * r->first_fifth;
     return r->max <= r->rounding || r->max > r->limit ||
-           r->max <= l->own * fmax(2, sqrt(times) / slow) ||
+           r->max <= l->own * (l->own > coarse * r->limit
+                                   ? level
+                                   : fmax(2, sqrt(times) / slow)) ||
            (r->max <= level * r->early && times >= few) ||
            (ended && times >= many);
 }
@@ -230,6 +234,8 @@ static nevh_verdict judge_longer(const nevh_energy_report *own,
     bool beyond = !(own->max <= fmax(own->limit, own->rounding));
     bool driven = own->theory == NEVH_THEORY_OPEN && !beyond &&
                   longer->met > grown * own->met;
+    bool carried = own->theory == NEVH_THEORY_OPEN &&
+                   longer->met > grown * own->met && is_carried(longer);
     bool grows = verdict == NEVH_RANDOM_WALK || verdict == NEVH_DRIFTS;
     bool rounded =
         is_rounding(own) || (driven && only_rounding_grows(own, longer));
@@ -237,7 +243,8 @@ static nevh_verdict judge_longer(const nevh_energy_report *own,
         verdict = NEVH_UNDECIDED;
     if (verdict == NEVH_UNDECIDED)
         verdict = judge_own(own, longer);
-    if (beyond && verdict != NEVH_BOUNDED)
+    if (beyond && verdict != NEVH_BOUNDED &&
+        !(carried && verdict == NEVH_UNDECIDED))
         verdict = NEVH_UNSTABLE;
     if ((small || driven) && verdict == NEVH_UNSTABLE)
         verdict = NEVH_UNDECIDED;

@@ -48,9 +48,10 @@ static bool is_flat(const nevh_energy_report *r, double allowed) {
 /* A drive makes the motion grow, and the error with it: a hundredfold, or less and
    steadily, as in a resonance. */
 static bool is_carried(const nevh_energy_report *r) {
-    static const double much = 100, some = 4, small = 0.5;
+    static const double much = 100, some = 4;
     double before = r->relative[0], after = r->relative[1];
     bool steadily = fmin(r->rate[0], r->rate[1]) > along_a_line;
+    double small = steadily ? 1 : 0.5;
     return r->theory == NEVH_THEORY_OPEN &&
            r->grown > (steadily ? some : much) &&
            r->last_fifth > sqrt(r->grown) * r->first_fifth &&
@@ -70,8 +71,9 @@ static nevh_verdict judge_large(const nevh_energy_report *r, double times) {
     return returns && level ? NEVH_BOUNDED : NEVH_UNSTABLE;
 }
 
+/* Rounding beyond the limit hides what the scheme does. */
 static nevh_verdict judge_rounding(const nevh_energy_report *r, double times) {
-    if (r->theory == NEVH_THEORY_LOSES)
+    if (r->theory == NEVH_THEORY_LOSES || r->max > r->limit)
         return NEVH_UNDECIDED;
     if (is_level(r))
         return NEVH_BOUNDED;

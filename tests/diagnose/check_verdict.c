@@ -162,6 +162,23 @@ TEST(resonance) {
     ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, INFINITY), NEVH_RANDOM_WALK);
 }
 
+/* A drive that pulls the motion along; a large error is below its energies. */
+TEST(pulled_along) {
+    nevh_energy_report r = {.samples = 1000,
+                            .max = 1200,
+                            .first_fifth = 240,
+                            .last_fifth = 1200,
+                            .limit = 280,
+                            .met = 2800,
+                            .rate = {0.99, 1, 1.07},
+                            .early = 150,
+                            .grown = 5.3,
+                            .relative = {0.56, 0.53}};
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, INFINITY), NEVH_UNDECIDED);
+    r.relative[0] = r.relative[1] = 1.2;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, INFINITY), NEVH_UNSTABLE);
+}
+
 /* A walk that leans to one side is no drift where theory expects none. */
 TEST(leaning_walk) {
     nevh_energy_report r = {.samples = 20000,
@@ -194,6 +211,10 @@ TEST(far_above_the_energies) {
                             .early = 500};
     ck_assert_int_eq(judge(r, NEVH_THEORY_KEEPS, 1), NEVH_UNDECIDED);
     ck_assert_int_eq(judge(r, NEVH_THEORY_KEEPS, INFINITY), NEVH_UNSTABLE);
+    r.rounding = 1e3;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_KEEPS, INFINITY), NEVH_UNDECIDED);
+    r.limit = 1e3;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_KEEPS, INFINITY), NEVH_BOUNDED);
 }
 
 static nevh_theory theory_of(const problem *b, const nevh_integrator *scheme) {

@@ -197,15 +197,17 @@ static void drift_words(const plan *p, const row rows[], size_t count,
     free(subject);
 }
 
-/* Errors that do not grow, but are no small part of the energy. */
+/* Errors that do not grow, or that rounding hides, but are no small part of the
+   energy. */
 static void large_error_words(const plan *p, const row rows[], size_t count,
                               list *words) {
     for (size_t i = 0; i < count; i++) {
         const row *r = &rows[i];
-        if (!verdict_is(r, NEVH_BOUNDED) || !(r->energy.max > 1))
+        bool rounded = r->energy.max <= r->energy.rounding;
+        bool hidden = rounded && verdict_is(r, NEVH_UNDECIDED);
+        if (!(verdict_is(r, NEVH_BOUNDED) || hidden) || !(r->energy.max > 1))
             continue;
         char *name = name_of(rows, count, r), *place = step_of(p, r);
-        bool rounded = r->energy.max <= r->energy.rounding;
         list_print(words,
                    rounded ? "%s at %s: the error, up to %.2g times the energy "
                              "scale, is rounding: far larger energies cancel "
