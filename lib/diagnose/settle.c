@@ -239,7 +239,9 @@ static nevh_verdict judge_longer(const nevh_energy_report *own,
     bool grows = verdict == NEVH_RANDOM_WALK || verdict == NEVH_DRIFTS;
     bool rounded =
         is_rounding(own) || (driven && only_rounding_grows(own, longer));
-    if (driven && grows && is_carried(longer))
+    bool larger = longer->max > grown * own->max;
+    if (driven &&
+        (verdict == NEVH_BOUNDED ? larger : grows && is_carried(longer)))
         verdict = NEVH_UNDECIDED;
     if (verdict == NEVH_UNDECIDED)
         verdict = judge_own(own, longer);

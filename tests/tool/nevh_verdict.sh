@@ -174,6 +174,14 @@ compares $work/resonance.nevh --integrators pefrl,gauss4 --gradient exact
 verdicts pefrl=undecided gauss4=undecided
 exits 0 compare $work/resonance.nevh --integrators pefrl --gradient exact
 has '^pefrl at dt = 0\.1: the energies of the motion grow until t = '
+# Off the resonance by the error of the step the energies swing, thousands of times as
+# large as in the run.
+scene 'x = 0' 'K = p_x^2/2\nV = x^2/2\nD = -0.1*x*cos(t)' 't_end = 31.2\ndt = 1.2' swing
+compares $work/swing.nevh --integrators mclachlan-sb3a5 --gradient central4
+verdicts mclachlan-sb3a5=undecided
+scene 'x = 1' 'K = p_x^2/2\nV = x^2/2\nD = -0.1*x*cos(2.5*t)' 't_end = 31.2\ndt = 1.2' forced
+compares $work/forced.nevh --integrators mclachlan-sb3a5 --gradient central4
+verdicts mclachlan-sb3a5=bounded
 
 # A pulse that shorter runs did not meet: none foretells the steps that it takes.
 scene 'x = 1' 'K = p_x^2/2\nV = x^2/2\nD = -5*x*exp(-((t-500)/0.5)^2)' \
