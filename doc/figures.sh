@@ -1,6 +1,6 @@
 #!/bin/sh
-# figures.sh SRCDIR NEVH EXAMPLES: makes anew what the manual and the README
-# quote, in SRCDIR/doc and between the marks of SRCDIR/README.md.  Milliseconds
+# figures.sh SRCDIR NEVH EXAMPLES: makes anew what the manual
+# and the README show, in SRCDIR/doc.  Milliseconds
 # are those of the machine, and of what else it does meanwhile.
 
 srcdir=$1 nevh=$2 examples=$3
@@ -25,23 +25,6 @@ quote() {
     shift
     echo "$shown" >&2
     { echo "\$ $shown" | shown_lines && "$@"; } >"$file.new" 2>&1 && mv "$file.new" "$file"
-}
-
-# Puts doc/NAME.txt between <!-- NAME --> and <!-- end -->.
-refresh() {
-    awk -v doc="$srcdir/doc/" '
-        /^<!-- end -->$/ { quoting = 0 }
-        !quoting { print }
-        /^<!-- [a-z-]+ -->$/ && $2 != "end" {
-            quoting = 1
-            print "```"
-            while ((getline line < (doc $2 ".txt")) > 0) {
-                sub(/^\$ nevh /, "$ ./nevh ", line)
-                print line
-            }
-            print "```"
-        }' "$srcdir/README.md" >"$srcdir/README.md.new" &&
-        mv "$srcdir/README.md.new" "$srcdir/README.md"
 }
 
 quote compare-first "$nevh" compare pendulum --dt 0.05 \
@@ -78,4 +61,3 @@ sh "$srcdir/examples/paper/paper.sh" "$nevh" "$examples" >"$srcdir/doc/paper.new
 quote gradient-cost "$examples/gradient_cost"
 quote steps-that-follow "$examples/steps_that_follow"
 quote nevh-cost "$examples/nevh_cost"
-refresh

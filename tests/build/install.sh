@@ -49,13 +49,13 @@ lib=$(dirname "$(find "$dest-moved" -name nevh.pc)")/..
     exit $status
 ) || { cat "$dest-moved/out"; fails "a tree that was moved has no scenes"; }
 
-# The line of the README: compiled, it runs without LD_LIBRARY_PATH.
+# The line of the manual: compiled, it runs without LD_LIBRARY_PATH.
 pc=$(find "$dest" -name nevh.pc)
 sed "s|^\([a-z_]*\)=/|\1=$dest/|" "$pc" >"$dest/nevh.pc"
 PKG_CONFIG_PATH=$dest${PKG_CONFIG_PATH:+:$PKG_CONFIG_PATH}
 export PKG_CONFIG_PATH
-grep -q 'Wl,-rpath,"$(pkg-config --variable=libdir nevh)"' "$srcdir/README.md" ||
-    fails "README.md has another line for compilers"
+grep -q 'Wl,-rpath,"$(pkg-config --variable=libdir nevh)"' "$srcdir/doc/nevh.texi" ||
+    fails "the manual has another line for compilers"
 libdir=$("$pkgconfig" --variable=libdir nevh)
 static=
 test -e "$libdir/libnevh.so" || static=--static

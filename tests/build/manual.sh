@@ -63,7 +63,7 @@ while IFS= read -r command; do
         { fails "exit status $?"; cat $work/err; }
 done <$work/commands
 
-# The tables that the manual and the README quote have the numbers of today: all
+# The tables that the manual quotes have the numbers of today: all
 # columns of each row but milliseconds, which stand last but one.  Counts of implicit
 # schemes depend a little on the sines of the machine.
 rows_of() {
@@ -87,12 +87,6 @@ for quoted in compare-first compare-pendulum; do
         END { exit wrong }' ||
         fails "has other numbers than doc/$quoted.txt: make figures"
 done
-command='README.md'
-sed -n '/^<!-- compare-first -->$/,/^<!-- end -->$/p' "$top/README.md" |
-    sed '/^<!--/d; /^```/d; s/^\$ \.\/nevh /$ nevh /' |
-    diff - "$top/doc/compare-first.txt" ||
-    fails 'has another table than doc/compare-first.txt: make figures'
-
 command='list integrators'
 $limit "$nevh" list integrators --format csv >$work/out 2>$work/err </dev/null ||
     fails "exit status $?"

@@ -1,6 +1,6 @@
 #!/bin/sh
 # A user's way: make install, then compile with what pkg-config says.  The
-# programs are the first one of README.md, so that what we print there works,
+# programs are those of the manual, so that what we print there works,
 # and tests/build/outside.c, whose blocks become vector code without any flags.
 
 srcdir=${srcdir:-.}
@@ -48,9 +48,7 @@ case " $flags" in
     fails "users of the shared library need not link GSL" ;;
 esac
 
-# What README.md and the manual show of C: programs, and two ways to write a term.
-awk '/^```c *$/ { inside = 1; next } /^```/ && inside { exit } inside' \
-    "$srcdir/README.md" >"$dest/readme.c" || fails "there is no README.md"
+# What the manual shows of C: a program, and two ways to write a term.
 # manual PATTERN: the first example with it in the manual, as it is printed.
 manual() {
     awk -v pattern="$1" '
@@ -86,7 +84,7 @@ int main(void) {
 END
 } | sed '1i #include <stdio.h>' >"$dest/terms.c"
 grep -q 'NEVH_GRADIENTS(pendulum)' "$dest/terms.c" || fails "the manual has no terms"
-for program in readme manual terms; do
+for program in manual terms; do
     test -s "$dest/$program.c" || fails "there is no C in $program"
     # Unquoted: compilers with options, and lists of flags.
     # shellcheck disable=SC2086
