@@ -21,6 +21,7 @@ python_package = \
 	python/nevh/_functions.py \
 	python/nevh/_graph.py \
 	python/nevh/_graph_text.py \
+	python/nevh/_hand_in.py \
 	python/nevh/_hgrad.py \
 	python/nevh/_library.py \
 	python/nevh/_looks.py \

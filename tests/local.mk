@@ -201,6 +201,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh.sh \
 	tests/tool/nevh_scenes.sh \
 	tests/tool/nevh_sheet.sh \
+	tests/tool/nevh_mark.sh \
 	tests/tool/nevh_help.sh \
 	tests/tool/nevh_commands.sh \
 	tests/tool/nevh_start.sh \

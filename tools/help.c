@@ -57,6 +57,12 @@ static void print_all(FILE *f) {
     fputc('\n', f);
     help_print(f, 0, 0, text);
     free(text);
+    fputc('\n', f);
+    help_print(f, 0, 0,
+               "The manual is info nevh, in the sources info doc/nevh.info; as "
+               "pages, with pictures and the worksheets, make -C build site "
+               "makes build/doc/nevh-site/index.html.  nevh sheet lists the "
+               "worksheets.");
 }
 
 /* Prints the help of nevh without a command. */
@@ -69,9 +75,9 @@ void help_brief(FILE *f) {
         "\nTo begin:\n"
         "  nevh compare pendulum        a table of integrators\n"
         "  nevh new mine.nevh           a scene of your own\n"
-        "  nevh help compare            a command, its options and examples\n"
-        "SCENE is a file, or a name of nevh list scenes.  nevh help prints all "
-        "options.\n",
+        "  nevh help compare            a command; nevh help: all options, and the "
+        "manual\n"
+        "SCENE is a file, or a name of nevh list scenes.\n",
         f);
 }
 

@@ -38,9 +38,10 @@ function digest(task, cell) {
   return [...made.slice(0, 6)].map(x => x.toString(16).padStart(2, "0")).join("");
 }
 function numberOf(text) {
-  const at = text.replace(/\u2212/g, "-").replace(",", ".")
-    .match(/^[=\s]*([-+]?[\d.]+)\s*(?:e([-+]?\d+)|[*x\u00d7\u00b7]\s*10\s*\^\s*([-+]?\d+))?\s*(%?)/i);
-  return at ? Number(at[1] + "e" + (at[2] || at[3] || 0)) / (at[4] ? 100 : 1) : NaN;
+  const at = text.replace(/[\u207b\u2070\u00b9\u00b2\u00b3\u2074-\u2079]+/g, x => "^" + x).normalize("NFKC")
+    .replace(/[\u2010-\u2014\u2212]/g, "-").replace(/^.*[=\u2248]/, "").replace(",", ".").trim()
+    .match(/^([-+]?\s*(?:\d+\.?\d*|\.\d+))(?:\s*e\s?([-+]?\d+)|\s*(?:[*x\u00d7\u00b7]\s*|\s)10\s*\^?\s*\(?([-+]?\d+)\)?)?\s*(%?)\s*(?:1\/s|[^\d]*(?:[a-z]\^?-?[1-4])?)$/i);
+  return at ? Number(at[1].replace(/\s/g, "") + "e" + (at[2] || at[3] || 0)) / (at[4] ? 100 : 1) : NaN;
 }
 function isRight(task, text) {
   const x = numberOf(text);

@@ -6,9 +6,11 @@ SPDX-License-Identifier: GPL-3.0-or-later
 from __future__ import annotations
 
 import argparse
+import concurrent.futures
 import csv
 import html
 import io
+import itertools
 import json
 import os
 import re
@@ -17,9 +19,10 @@ import unicodedata
 
 from . import _sheet_export as export
 from . import _sheet_text as text
+from ._hand_in import is_blank, names_of, plain, read_answers, typed
 from ._library import Error
 from ._progress import Progress
-from ._tasks import Answer, Measured, Quantities, filled, numbers, plain, tasks, typed
+from ._tasks import Answer, Measured, Quantities, filled, numbers, tasks
 
 
 class Sheet:
@@ -74,6 +77,17 @@ def file_name(name):
     return made if made else "student-" + plain(name).encode().hex()[:16]
 
 
+def file_names(names):
+    """{name: a part of a file's name}, all different: Nuñez and Nunez are two people."""
+    made = {}
+    for name in filter(None, names):
+        stem, count = file_name(name), 2
+        while stem in made.values():
+            stem, count = "%s-%d" % (file_name(name), count), count + 1
+        made[name] = stem
+    return made
+
+
 def boxes(asked):
     """What follows an item: room for answers, or for work where no number is asked."""
     def of(item):
@@ -81,27 +95,6 @@ def boxes(asked):
                 for task in asked if task.item == item]
         return "".join(rows) or '<div class="room"></div>'
     return of
-
-
-def names_of(given):
-    """The names: of a file with one a line, or the name itself."""
-    if not os.path.isfile(given):
-        if "/" in given or given.endswith((".txt", ".csv")):
-            raise Error("there is no file %s with names, one a line" % given)
-        if not plain(given):
-            raise Error("--for takes a name, or a file of names")
-        return [given]
-    with open(given, encoding="utf-8-sig") as file:
-        listed = [" ".join(line.split()) for line in file]
-    listed = [name for name in listed if name and name[0] != "#"]
-    if not listed:
-        raise Error("%s has no names, one a line" % given)
-    twice = [name for k, name in enumerate(listed)
-             if plain(name) in map(plain, listed[:k])]
-    if twice:
-        raise Error("%s has the name %s twice; write it so that the two differ" % (
-            given, twice[0]))
-    return listed
 
 
 def numbers_of(given, known):
@@ -117,22 +110,35 @@ def list_of_sheets(room):
     """A line a sheet."""
     lines = ["Worksheets for a class, two hours each:", ""]
     for sheet in read_sheets(room.path):
-        lines.append("  %d  %-28s %d answers are numbers" % (
-            sheet.number, text.markdown(sheet.title), len(room.asked(sheet.number))))
+        count = len(room.asked(sheet.number))
+        lines.append("  %d  %-28s %s" % (sheet.number, text.markdown(sheet.title),
+                                         "%d answers are numbers" % count if count > 1 else
+                                         "1 answer is a number"))
     return "\n".join(lines + [
         "", "To begin:",
-        "  nevh sheet 1                        writes sheet-1.html, to print, and sheet-1.ipynb",
-        "  nevh sheet 1 --for names.txt --key 7   one a name, with other numbers",
-        "  nevh sheet 1 --for names.txt --key 7 --answers   the answers",
-        "  nevh mark answers.csv --key 7       right, wrong, and why", ""])
+        "  nevh sheet 1                     sheet-1.html, to print, and sheet-1.ipynb",
+        "For a class; names.txt has a name a line, and the key is yours, and secret:",
+        "  nevh sheet 1 --for names.txt --key 7 -o class.html   all to print, other numbers each",
+        "  nevh sheet 1 --for names.txt --key 7 --answers       the answers",
+        "  nevh sheet 1 --for names.txt --as form -o answers.csv   a table to fill in",
+        "  nevh mark answers.csv --for names.txt --key 7        right, wrong, and why", ""])
 
 
-def told(names):
-    """The names one by one, with the progress."""
-    with Progress("sheet") as progress:
-        for k, name in enumerate(names):
-            progress.at(k/len(names))
-            yield name
+def told(things, what="sheet"):
+    """Things one by one, with the progress."""
+    with Progress(what) as progress:
+        for k, one in enumerate(things):
+            progress.at(k/len(things))
+            yield one
+
+
+def by_all(function, things):
+    """What a function makes of things, in their order, by all processors: each waits for
+    commands.  Few wait in line, so that an interrupt ends soon."""
+    many = os.cpu_count() or 1
+    with concurrent.futures.ThreadPoolExecutor(many) as pool:
+        for start in range(0, len(things), 4*many):
+            yield from pool.map(function, things[start:start + 4*many])
 
 
 def write(path, made):
@@ -140,29 +146,43 @@ def write(path, made):
         file.write(made)
 
 
-def make_sheets(room, given):
+def page_of(room, sheet, name):
+    """A sheet as a part of a page to print."""
+    return text.sheet_html(sheet.number, sheet.title, sheet.body, sheet.source, name or "",
+                           boxes(room.asked(sheet.number)))
+
+
+def one_page(room, names, chosen, key):
+    """The sheets of all names on one page, which prints each on paper of its own."""
+    parts = [page_of(room, sheet, name) for name in told(names)
+             for sheet in read_sheets(room.path, name, key) if sheet.number in chosen]
+    return text.page("Worksheets", "".join(parts), room.folder)
+
+
+def form(room, names, chosen):
+    """A table to be filled in: a row a name, a column a task."""
+    return as_csv([["name"] + [task.asks() for number in chosen for task in room.asked(number)]]
+                  + [[name or ""] for name in names])
+
+
+def make_sheets(room, given, names, chosen):
     """Pages and notebooks in a folder; what was written."""
-    folder = given.output or "."
+    folder, count, stems = given.output or ".", 0, file_names(names)
     if not os.path.isdir(folder):
         os.mkdir(folder)
-    names = [None] if given.name is None else names_of(given.name)
-    chosen, count = numbers_of(given.number, sorted(room.quantities)), 0
     for name in told(names):
         for sheet in read_sheets(room.path, name, given.key):
             if sheet.number not in chosen:
                 continue
-            asked = room.asked(sheet.number)
             stem = os.path.join(folder, "-".join(
-                ["sheet", str(sheet.number)] + ([file_name(name)] if name else [])))
+                ["sheet", str(sheet.number)] + ([stems[name]] if name else [])))
             if given.form in (None, "page"):
-                body = text.sheet_html(sheet.number, sheet.title, sheet.body, sheet.source,
-                                       name or "", boxes(asked))
-                write(stem + ".html", text.page("Sheet %d" % sheet.number, body,
-                                                sheet.source))
+                write(stem + ".html", text.page("Sheet %d" % sheet.number, page_of(
+                    room, sheet, name), sheet.source))
                 count += 1
             if given.form in (None, "notebook"):
-                write_notebook(sheet, stem + ".ipynb", [(task.item, task.asks())
-                                                        for task in asked])
+                write_notebook(sheet, stem + ".ipynb", [
+                    (task.item, task.asks()) for task in room.asked(sheet.number)])
                 count += 1
             if given.form == "check":
                 write(stem + "-check.html", export.check_page(
@@ -171,14 +191,14 @@ def make_sheets(room, given):
     return "%d files are made in %s\n" % (count, folder)
 
 
-def answer_rows(room, given):
+def answer_rows(room, given, names, chosen):
     """The answers: a row a name and task."""
-    names = [None] if given.name is None else names_of(given.name)
-    chosen = numbers_of(given.number, sorted(room.quantities))
     rows = [["name", "task", "answer", "lowest", "highest", "unit", "asked"]]
+    found = by_all(lambda at: room.answers(at[1], at[0], given.key),
+                   [(name, number) for name in names for number in chosen])
     for name in told(names):
-        for number in chosen:
-            for answer in room.answers(number, name, given.key):
+        for each in itertools.islice(found, len(chosen)):
+            for answer in each:
                 width = answer.width(answer.number)
                 rows.append([name or "", answer.task.name, shown(answer.number, answer),
                              "%.6g" % (answer.number - width),
@@ -207,67 +227,72 @@ def as_table(rows):
                    "\n" for row in rows)
 
 
-def read_answers(path):
-    """(name, task, answer) of a CSV, by the names of its columns; , or ; between them."""
-    with (sys.stdin if path == "-" else open(path, encoding="utf-8-sig", newline="")) as file:
-        lines = file.read().splitlines()
-    if not lines:
-        raise Error("%s is empty" % path)
-    mark = max(",;\t", key=lines[0].count)
-    rows = list(csv.reader(lines, delimiter=mark))
-    head = [plain(cell) for cell in rows[0]]
-    missing = [name for name in ("name", "task", "answer") if name not in head]
-    if missing:
-        raise Error("%s: the first line names no column %s; it has to be name,task,answer"
-                    % (path, missing[0]))
-    places = [head.index(name) for name in ("name", "task", "answer")]
-    for number, row in enumerate(rows[1:], 2):
-        if not any(cell.strip() for cell in row):
-            continue
-        if len(row) != len(head):
-            raise Error('%s: line %d has %d columns, not %d; an answer with a comma stands '
-                        'between quotes, "1,6"' % (path, number, len(row), len(head)))
-        yield number, [row[place].strip() for place in places]
-
-
 def mark_rows(room, given):
-    """The verdict of each answer, and the numbers of right ones of each name."""
-    known, rows, sums = {}, [["name", "task", "answer", "verdict", "why"]], {}
-    for number, (name, task, said) in read_answers(given.number):
-        task = task.rstrip(".").lower()
-        if task not in room.tasks:
-            near = [one for one in room.tasks if one.startswith(task)]
-            raise Error("%s: line %d: there is no task %s%s" % (
-                given.number, number, task, "; there are " + ", ".join(near) if near else ""))
-        at = (plain(name), task)
-        if at not in known:
-            known[at] = Answer(room, room.tasks[task], name or None, given.key)
-        verdict, why = known[at].judged(typed(said, room.tasks[task].unit)) if said else \
-            ("missing", "")
-        rows.append([name, task, said, verdict, why])
-        right, of = sums.get(plain(name), (0, 0))
-        sums[plain(name)] = right + (verdict == "right"), of + 1
-    return rows, sums
+    """The verdict of each answer, and the right ones of each name; without a key the answers
+    are those of the sheets that all have."""
+    listed = None if given.name is None else names_of(given.name)
+    handed = list(read_answers(given.number, room.tasks, listed))
+    rows = [["name", "task", "answer", "verdict", "why"]]
+    right = {name: {} for name in listed or ()}
+    spelt = {plain(name): name for name in right}
+
+    def judged(one):
+        _, name, task, said = one
+        return ("missing", "") if is_blank(said) else Answer(
+            room, room.tasks[task], name if given.key and name else None,
+            given.key).judged(typed(said, room.tasks[task].unit))
+    for (line, name, task, said), verdict in zip(told(handed, "mark"), by_all(judged, handed)):
+        rows.append([name, task, said, *verdict])
+        one = right.setdefault(spelt.setdefault(plain(name), name), {})
+        if task in one:
+            sys.stderr.write("nevh: line %d: %s answers %s again; the last answer counts\n" % (
+                line, name, task))
+        one[task] = verdict[0] == "right"
+    return rows, right
+
+
+def sums(right):
+    """A line a name: how many of the tasks that anybody answers are right."""
+    of = len(set().union(*right.values()))
+    return "".join("%s: %d of %d are right\n" % (name, sum(one.values()), of)
+                   for name, one in right.items())
 
 
 def run(given):
     """What a command prints."""
     room = Room()
     if given.what == "mark":
-        rows, sums = mark_rows(room, given)
-        if given.format == "csv":
-            return as_csv(rows)
-        return as_table(rows) + "\n" + "".join(
-            "%s: %d of %d are right\n" % (name, *one) for name, one in sums.items())
+        rows, right = mark_rows(room, given)
+        return as_csv(rows) if given.format == "csv" else as_table(rows) + "\n" + sums(right)
+    if given.number is given.name is given.form is given.output is None and \
+            not given.answers:
+        return list_of_sheets(room)
+    if given.name is not None and not given.key and given.form != "form":
+        raise Error("--for needs --key too, a word of yours: the numbers are drawn from it and "
+                    "from the name")
+    names = [None] if given.name is None else names_of(given.name)
+    chosen = numbers_of(given.number, sorted(room.quantities))
     if given.answers:
-        rows = answer_rows(room, given)
+        rows = answer_rows(room, given, names, chosen)
         return as_csv(rows) if given.format == "csv" or given.output else as_table(rows)
     if given.form == "moodle":
-        return export.moodle(room, numbers_of(given.number, sorted(room.quantities)),
-                             [None] if given.name is None else names_of(given.name), given.key)
-    if given.number is given.name is given.form is given.output is None:
-        return list_of_sheets(room)
-    return make_sheets(room, given)
+        return export.moodle(room, chosen, names, given.key)
+    if given.form == "form":
+        return form(room, names, chosen)
+    if is_one_page(given):
+        return one_page(room, names, chosen, given.key)
+    return make_sheets(room, given, names, chosen)
+
+
+def is_one_page(given):
+    """Whether all sheets are asked for in one file."""
+    return given.form in (None, "page") and (given.output or "").endswith(".html")
+
+
+def is_file(given):
+    """Whether --output names a file, not a folder."""
+    return given.output and (given.what == "mark" or given.answers or
+                             given.form in ("moodle", "form") or is_one_page(given))
 
 
 def main(arguments):
@@ -284,7 +309,7 @@ def main(arguments):
     given = reader.parse_args(arguments)
     try:
         made = run(given)
-        if given.output and (given.what == "mark" or given.answers or given.form == "moodle"):
+        if is_file(given):
             write(given.output, made)
         else:
             sys.stdout.write(made)

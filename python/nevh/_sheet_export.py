@@ -46,7 +46,17 @@ def _question(room, answer):
     # An interval begins where that before it ends: Moodle takes the first that fits.
     for said, number in answer.mistakes():
         lines.append(_answer(0, number, answer.width(number), said))
-    return "".join(lines) + "</question>\n"
+    return "".join(lines) + _units(answer.task.unit) + "</question>\n"
+
+
+def _units(unit):
+    """The unit, which may be typed and need not be; without one a text behind the number is
+    refused."""
+    if not unit:
+        return "<unitgradingtype>0</unitgradingtype><showunits>3</showunits>\n"
+    return ("<units><unit><multiplier>1</multiplier><unit_name>%s</unit_name></unit></units>\n"
+            "<unitgradingtype>0</unitgradingtype><unitpenalty>0.1</unitpenalty>"
+            "<showunits>0</showunits><unitsleft>0</unitsleft>\n" % html.escape(unit))
 
 
 def _answer(share, number, width, said):

@@ -194,5 +194,5 @@ def page(title, sheets, source, script=""):
     """A page of sheets."""
     return ('<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">\n'
             '<meta name="viewport" content="width=device-width">\n<title>%s</title>\n'
-            "<style>\n%s</style></head>\n<body>\n%s%s</body></html>\n"
+            "<style>\n%s</style></head>\n<body>\n<main>\n%s</main>\n%s</body></html>\n"
             % (html.escape(title), text_of("sheets.css", source), sheets, script))

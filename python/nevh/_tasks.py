@@ -12,9 +12,10 @@ import os
 import re
 import shlex
 import subprocess
-import unicodedata
+import threading
 
 from . import _commands
+from ._hand_in import plain
 from ._library import Failed
 
 _functions = {name: getattr(math, name) for name in
@@ -29,11 +30,6 @@ def value_of(formula, names):
             raise ValueError("%s is no formula" % formula)
     return eval(compile(tree, formula, "eval"), {"__builtins__": {}},
                 {**_functions, **names})
-
-
-def plain(name):
-    """A name in one form, whatever its case and spaces."""
-    return " ".join(unicodedata.normalize("NFKC", name).casefold().split())
 
 
 def drawn(low, high, *words):
@@ -112,12 +108,12 @@ def numbers(folder):
 
 
 class Measured:
-    """Numbers that commands print; each command is run once."""
+    """Numbers that commands print; each command is run once, by any thread."""
     first = 'NR == 1 { for (i = 1; i <= NF; i++) c[$i] = i } '
 
     def __init__(self, folder):
         self.folder = folder
-        self.outputs, self.numbers = {}, {}
+        self.outputs, self.numbers, self.locks = {}, {}, {}
 
     def number(self, command, program):
         """The number that a command of numbers.list prints, by its program of awk."""
@@ -127,7 +123,7 @@ class Measured:
 
     def read(self, command, program):
         """As number, which keeps it."""
-        made = _output(["awk", "-F,", self.first + program], self.output(command),
+        made = _output(["awk", "-F,", "-vOFMT=%.12g", self.first + program], self.output(command),
                        self.folder)
         try:
             return float(made.split()[0])
@@ -141,6 +137,10 @@ class Measured:
             name, values, each = loop.groups()
             return "".join(self.output(each.replace("$" + name, value))
                            for value in values.split())
+        with self.locks.setdefault(command, threading.Lock()):
+            return self._of_one(command)
+
+    def _of_one(self, command):
         if command not in self.outputs:
             if command.startswith("nevh ") and not re.search(r"[;$&<>]", command):
                 words = [_commands.command()] + shlex.split(command)[1:]
@@ -169,6 +169,7 @@ class Task:
         self.digits, self.kind = int(digits.split()[0]), digits.split()[1]
         self.slack, _, self.absolute = slack.partition(" ")
         self.mistakes = []
+        self.truth = None
         self.sheet, item = re.match(r"(\d+)\.(\d+)", self.name).groups()
         self.sheet, self.item = int(self.sheet), int(item)
 
@@ -194,8 +195,8 @@ def last_unit(number, digits):
 
 
 def tasks(folder):
-    """{name: Task} of tasks.list; a line that begins with spaces is a mistake of the task
-    above it, or of all where there is none yet."""
+    """{name: Task} of tasks.list; a line that begins with spaces is the truth or a mistake of
+    the task above it, or a mistake of all where there is none yet."""
     made, common, task = {}, [], None
     with open(os.path.join(folder, "tasks.list"), encoding="utf-8") as file:
         for line in file.read().splitlines():
@@ -204,6 +205,8 @@ def tasks(folder):
             if line[0] != " ":
                 task = Task(line)
                 made[task.name] = task
+            elif line.startswith("  = "):
+                task.truth = [one.strip() for one in line[4:].split("|", 1)]
             else:
                 said, rules = line.strip().split(": ", 1)
                 for rule in rules.split("; "):
@@ -218,15 +221,16 @@ class Answer:
 
     def __init__(self, room, task, name, key):
         self.room, self.task, self.name, self.key = room, task, name, key
-        self.number = self.after()
+        self.number = self.measured() if task.truth is None else room.measured.number(*(
+            filled(one, self.quantities()) for one in task.truth))
         self.known = None
 
     def quantities(self, changed=()):
         return self.room.quantities[self.task.sheet].of(self.name, self.key,
                                                         self.task.sheet, changed)
 
-    def after(self, changed=(), replaced=()):
-        """The number after quantities are changed and texts replaced."""
+    def measured(self, changed=(), replaced=()):
+        """What the command gives, after quantities are changed and texts replaced."""
         listed = self.room.numbers[self.task.key]
         quantities = self.quantities(changed)
         texts = [filled(one, quantities) for one in (listed.command, listed.program)]
@@ -238,10 +242,10 @@ class Answer:
         """The number of a mistake; None where there is none."""
         try:
             if " -> " in rule:
-                return self.after(replaced=[filled(rule, self.quantities()).split(" -> ")])
+                return self.measured(replaced=[filled(rule, self.quantities()).split(" -> ")])
             change = re.match(r"([\w-]+) = (.*)", rule)
             if change:
-                return self.after(changed={change.group(1): change.group(2)})
+                return self.measured(changed={change.group(1): change.group(2)})
             return float(value_of(rule, {"x": self.number, **{
                 one: _number(text) for one, text in self.quantities().items()}}))
         except (Failed, ArithmeticError, ValueError, TypeError):
@@ -254,6 +258,11 @@ class Answer:
 
     def is_near(self, typed, number):
         return abs(typed.number - number) <= self.width(number, typed.unit)
+
+    def is_right(self, typed):
+        """Whether a reading of what was typed is the right number."""
+        return self.is_near(typed, self.number) or \
+            typed.other is not None and self.is_near(typed.other, self.number)
 
     def tells_apart(self, number):
         """Whether no answer may be taken for both this number and the right one."""
@@ -269,9 +278,9 @@ class Answer:
 
     def judged(self, typed):
         """(verdict, why) of what was typed."""
-        if typed is None:
-            return "unreadable", "not a number"
-        if self.is_near(typed, self.number):
+        if typed.number is None:
+            return "unreadable", typed.why
+        if self.is_right(typed):
             return "right", ""
         if abs(typed.number - self.number) <= self.task.around(self.number) + typed.unit:
             return "wrong", "too few digits: %d %s are asked for" % (self.task.digits,
@@ -280,29 +289,3 @@ class Answer:
             if self.is_near(typed, number):
                 return "wrong", said
         return "wrong", ""
-
-
-class Typed:
-    """A number as a person typed it, and the unit of its last digit."""
-
-    def __init__(self, number, unit):
-        self.number, self.unit = number, unit
-
-
-def typed(text, unit=""):
-    """The number in an answer in a unit, such as 1.6e-2, 1,6*10^-2, 76 %, 1.5 s; None:
-    there is none."""
-    text = unicodedata.normalize("NFKC", text).strip().replace("\u2212", "-")
-    at = re.match(r"[=~\s]*([-+]?)(\d+[.,]?\d*|[.,]\d+)\s*(?:[eE]([-+]?\d+)|"
-                  r"(?:\*|x|\u00d7|\u00b7)\s*10\s*(?:\^|\*\*)?\s*([-+]?\d+))?\s*(%?)", text)
-    if not at:
-        return None
-    sign, mantissa, power, ten, percent = at.groups()
-    mantissa = mantissa.replace(",", ".")
-    scale = 10.0**(int(power or ten or 0) - 2*bool(percent and unit != "%"))
-    decimals = len(mantissa.partition(".")[2])
-    unit = 10.0**-decimals
-    if not decimals and "." not in mantissa:  # zeros at the end may be rounded ones
-        digits = mantissa.lstrip("0")
-        unit = 10.0**(len(digits) - len(digits.rstrip("0")))
-    return Typed((-1 if sign == "-" else 1)*float(mantissa)*scale, unit*scale)

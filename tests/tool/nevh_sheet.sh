@@ -16,7 +16,7 @@ exits 2 sheet 99
 says 'there is no sheet 99'
 exits 2 sheet one
 exits 2 sheet 1 --as paper
-says 'page, notebook, check or moodle'
+says 'page, notebook, check, moodle or form'
 
 # Without a name the usual numbers.
 exits 0 sheet 1 -o $work/usual
@@ -61,7 +61,7 @@ while read -r task key; do
 done <<END
 1.1a first-p
 1.4 rk-passes
-2.2 order-rk
+2.2 constant-rk
 3.2a disc-euler
 4.3a quartic-half
 5.1a moon-formula
@@ -110,6 +110,23 @@ for why in 'wrong,the sign' 'wrong,half a period' 'wrong,what is lost for what i
 done
 grep -q ',wrong,$' $work/out || fails "gives a reason where none is known"
 
+# What a command of the sheets gives is right, too, where the answer is certified otherwise;
+# no two names have the same numbers in any task.
+"$python" - <<'END' || fails "has an answer that its sheet's command does not give"
+from nevh import _classroom
+room = _classroom.Room()
+tasks = [task for task in room.tasks.values() if task.truth]
+assert len(tasks) > 8
+for task in tasks:
+    for name in (None, "Ada Lovelace"):
+        answer = _classroom.Answer(room, task, name, "7")
+        assert abs(answer.measured() - answer.number) < 0.3*answer.width(answer.number), (
+            task.name, answer.measured(), answer.number)
+made = [_classroom.Answer(room, room.tasks[task], name, "7").number
+        for task in ("1.3", "2.1a", "2.2", "3.4") for name in ("Ada Lovelace", "Carl Runge")]
+assert all(abs(one/two - 1) > 0.05 for one, two in zip(made[::2], made[1::2])), made
+END
+
 # Mistakes that are computed: half the step, another method, degrees.
 "$python" - >$work/known.csv <<'END'
 from nevh import _classroom
@@ -133,7 +150,7 @@ says 'names no column task'
 printf 'name,task,answer\nAda,1.9,1\n' >$work/bad.csv
 exits 2 mark $work/bad.csv
 says 'line 2: there is no task 1.9'
-printf 'name,task,answer\nAda,1.4,1,6\n' >$work/bad.csv
+printf 'name,task,answer\nAda,1.4,1,6,2\n' >$work/bad.csv
 exits 2 mark $work/bad.csv
 says 'between quotes'
 exits 2 mark $work/missing.csv
@@ -154,6 +171,18 @@ asked = quiz.findall("question[@type='numerical']")
 assert len(asked) == 4, len(asked)
 assert all(one.find("answer").get("fraction") == "100" for one in asked)
 assert any(said.text for one in asked for said in one.findall("answer/feedback/text"))
+# Moodle takes the first answer whose interval holds a response, and refuses a unit that the
+# question does not have.
+for one in asked:
+    right = one.findall("answer")[0]
+    number, tolerance = (float(right.findtext(part)) for part in ("text", "tolerance"))
+    assert 0 < tolerance < abs(number)/5, (number, tolerance)
+    for wrong in one.findall("answer")[1:]:
+        assert wrong.get("fraction") == "0"
+        assert abs(float(wrong.findtext("text")) - number) > tolerance
+    unit = re.search(r"in (\S+)\)</p>", one.findtext("questiontext/text"))
+    assert one.findtext("units/unit/unit_name") == (unit and unit.group(1)), unit
+    assert one.findtext("showunits") == ("0" if unit else "3")
 held = json.loads(re.search(r"const held = (.*);", open(sys.argv[2]).read()).group(1))["8.1"]
 right = float(sys.argv[3])
 

@@ -155,15 +155,17 @@ const option_row option_rows[] = {
      "leave out points before T, as of a transient; a formula"},
     {"from", "SCENE", TEXT("scene", from), NULL, "the scene to begin with"},
     {"for", "NAME|FILE", FILE_NAME(sheet.names), NULL,
-     "a sheet for this name, or for each name of a file, one a line"},
+     "a sheet for this name, or for each name of a file, one a line; of mark: "
+     "the names there are"},
     {"key", "TEXT", TEXT("text", sheet.key), NULL,
-     "of the lecturer: numbers are drawn from it and from the name"},
+     "of the lecturer: numbers are drawn from it and from the name; without "
+     "it mark takes those of the sheets that all have"},
     {"answers", NULL, FLAG(sheet.answers), NULL,
      "the answers, and how far right ones may be from them"},
     {"as", "FORM", CHOICE(unsigned, sheet.form), NULL,
      "page or notebook (both, if not given), check: a page that marks itself, "
-     "or moodle: questions as XML",
-     .words = "page|notebook|check|moodle"},
+     "moodle: questions as XML, or form: a table of answers to fill in",
+     .words = "page|notebook|check|moodle|form"},
     {"allow-code", NULL, FLAG(allow_code), "SCENE",
      "compile and run C code that the scene names"},
     {"impact", NULL, FLAG(impact), NULL,

@@ -104,8 +104,9 @@ const command sheet_command = {
     .brief = "worksheets for a class, one for each student",
     .help =
         "makes worksheet N, or all, as a page to print and a notebook; with "
-        "--for one for each name, with other numbers; without anything "
-        "lists the worksheets.  It needs Python",
+        "--for one for each name, with other numbers; with -o FILE.html all on "
+        "one page to print; without anything lists the worksheets.  It needs "
+        "Python",
     .examples = "sheet 1\n"
                 "sheet 1 --for 'Ada Lovelace' --key 7 --answers",
     .options = "for key answers as format output",
@@ -115,12 +116,14 @@ const command sheet_command = {
 const command mark_command = {
     .name = "mark",
     .operand = "FILE",
+    .brief = "answers to worksheets: right, wrong, and why",
     .help =
         "marks answers to worksheets, a CSV with the columns name, task and "
-        "answer: right, wrong, and where a known mistake gives that number, "
+        "answer, or name and a column a task: right, wrong, and where a known mistake gives that number, "
         "why.  It needs Python",
     .examples = "mark answers.csv --key 7\n"
-                "mark answers.csv --key 7 --format csv -o marks.csv",
-    .options = "key format output",
+                "mark answers.csv --for names.txt --key 7 --format csv -o "
+                "marks.csv",
+    .options = "for key format output",
     .run = mark,
 };

@@ -262,6 +262,7 @@ void html_scene(FILE *f, const nevh_scene *scene, const char *name,
 
 void html_foot(FILE *f) {
     fputs("</main>\n<footer><p>Made by nevh " PACKAGE_VERSION
-          ".</p></footer>\n</body>\n</html>\n",
+          ". The manual is <code>info nevh</code>; <code>nevh sheet</code> "
+          "lists worksheets for a class.</p></footer>\n</body>\n</html>\n",
           f);
 }
