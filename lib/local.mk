@@ -18,6 +18,8 @@ libnevh_core_la_SOURCES = \
 	lib/system/probe.c \
 	lib/system/masses.c \
 	lib/system/kinetic.c \
+	lib/system/pairs.c \
+	lib/system/pairs_private.h \
 	lib/system/kinetic_time.c \
 	lib/system/motion_private.h \
 	lib/system/normal_mode.c \
@@ -160,6 +162,7 @@ libnevh_core_la_SOURCES = \
 	lib/native/formula_text.c \
 	lib/native/slope_private.h \
 	lib/native/loop_differences.c \
+	lib/native/loop_pairs.c \
 	lib/native/loop_pieces.c \
 	lib/native/loop_text.c \
 	lib/native/slope_length.c \

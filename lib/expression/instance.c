@@ -1,6 +1,7 @@
 /* nevh: the instances of a part of a formula become terms of a system.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/formula_inside_private.h"
+#include "system/pairs_private.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -167,6 +168,31 @@ static void pack_columns(table *t, const int columns[], size_t count) {
     t->nc = count;
 }
 
+/* Pairs. */
+
+static bool move_rows(void *rows, size_t count, size_t size,
+                      const size_t order[]) {
+    char *from = size ? nevh__copy(rows, count, size) : NULL;
+    for (size_t i = 0; from && i < count; i++)
+        memcpy((char *)rows + i * size, from + order[i] * size, size);
+    free(from);
+    return from || !size;
+}
+
+/* Puts pairs of bodies in the order in which sums go by blocks; false when memory
+   is out. */
+static bool order_pairs(table *t) {
+    nevh__pairs pairs;
+    if (!nevh__pairs_find(&pairs, t->nq, t->np, t->count, t->q))
+        return true;
+    size_t *order = nevh__pairs_order(&pairs);
+    bool fine = order &&
+                move_rows(t->c, t->count, t->nc * sizeof *t->c, order) &&
+                move_rows(t->q, t->count, t->nq * sizeof *t->q, order);
+    free(order);
+    return fine;
+}
+
 /* Terms. */
 
 static bool own(nevh__adder *a, nevh__tape *tape) {
@@ -231,6 +257,10 @@ static bool make_term(part_tables *p, table *t) {
     w->columns = NULL;
     pack_columns(t, columns, count);
     free(columns);
+    if (tape && !order_pairs(t)) {
+        nevh__tape_free(tape);
+        return no_memory(p);
+    }
     return tape && own(p->adder, tape) && add_term(p->adder, t, tape);
 }
 

@@ -5,6 +5,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/tape_private.h"
 #include "gradient/block_private.h"
+#include "system/pairs_private.h"
 #include <math.h>
 #include <nevh/body.h>
 #include <string.h>
@@ -13,15 +14,19 @@
 static bool plan_term(const nevh_field *f, nevh__planned *term) {
     const nevh_term *decl = &term->term->decl;
     size_t constants = decl->nc * f->capacity;
+    nevh__pairs pairs;
+    term->turned =
+        nevh__pairs_find(&pairs, term->nq, term->np, decl->count, decl->q) &&
+        nevh__pairs_are_turned(&pairs);
     if (decl->count > f->capacity)
         return true;
     if (constants &&
         !(term->gathered = nevh__array(constants, sizeof *term->gathered)))
         return false;
     return nevh__scatter_map_init(&term->to_q, f->n, term->nq, decl->count,
-                                  decl->q) &&
+                                  decl->q, term->turned) &&
            nevh__scatter_map_init(&term->to_p, f->n, term->np, decl->count,
-                                  decl->p);
+                                  decl->p, false);
 }
 
 bool nevh__exact_gather_plan(nevh_field *f) {
@@ -139,11 +144,13 @@ static inline bool take_block(nevh_field *f, nevh__planned *term,
            finite;
 }
 
-/* Adds a variable's derivatives; whether all are finite. */
-static bool add_row(const nevh__planned *term, const nevh__block *b, size_t k,
-                    const double *row, double *out) {
+/* Adds what some groups of a block give to a variable; whether all is finite. */
+static bool add_groups(const nevh__planned *term, const nevh__block *b,
+                       size_t k, size_t from, size_t until, const double *row,
+                       double *out) {
     double bad = 0;
-    for (size_t group = 0; group < b->groups; group++) {
+    row += from * b->lanes;
+    for (size_t group = from; group < until; group++) {
         size_t i = nevh__index(term, b->group + group, k);
         double *to = out + i * b->width + b->lane;
         for (size_t lane = 0; lane < b->lanes; lane++, row++) {
@@ -173,12 +180,16 @@ static int take_part(nevh_field *f, nevh__planned *term, const nevh__block *b,
     nevh__exact_gradient(f, decl)(
         b->stride, decl->time ? f->times : f->zeros, q, p, c, decl->params,
         at->dh_dq ? f->slopes : NULL, at->dh_dp ? slopes_p : NULL);
-    for (size_t k = at->dh_dq ? 0 : term->nq;
-         k < (at->dh_dp ? term->nv : term->nq); k++) {
-        const double *row = f->slopes + k * b->stride;
-        if (!add_row(term, b, k, row, k < term->nq ? at->dh_dq : at->dh_dp))
-            return fail(f, term, b, row);
-    }
+    size_t first = at->dh_dq ? 0 : term->nq,
+           last = at->dh_dp ? term->nv : term->nq;
+    size_t each = term->turned ? 1 : b->groups;
+    for (size_t from = 0; from < b->groups; from += each)
+        for (size_t k = first; k < last; k++) {
+            const double *row = f->slopes + k * b->stride;
+            if (!add_groups(term, b, k, from, from + each, row,
+                            k < term->nq ? at->dh_dq : at->dh_dp))
+                return fail(f, term, b, row);
+        }
     return NEVH_OK;
 }
 

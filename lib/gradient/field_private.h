@@ -49,6 +49,8 @@ typedef struct {
     nevh__scatter_map to_q, to_p;      /* of exact_gather: no targets: none */
     double *gathered; /* constants of a block of all instances and of so many */
     size_t gathered_width; /* states, those that were asked for last */
+    bool
+        turned; /* pairs in blocks: exact slopes are added instance by instance */
     /* Rows of the field's lanes, where these differ, in place of the term's
        constants and of delta: count x nc and count x nv. */
     double *lane_c, *lane_delta;

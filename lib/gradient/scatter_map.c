@@ -31,19 +31,27 @@ static void begin_lists(nevh__scatter_map *x, size_t n, size_t uses[]) {
     x->begin[target] = at;
 }
 
-static void fill(nevh__scatter_map *x, const size_t index[], size_t uses[]) {
+static void list(nevh__scatter_map *x, const size_t index[], size_t uses[],
+                 size_t k, size_t i) {
+    x->column[uses[index[i * x->rows + k]]++] = k * x->stride + i;
+}
+
+static void fill(nevh__scatter_map *x, const size_t index[], size_t uses[],
+                 bool in_turn) {
     for (size_t k = 0; k < x->rows; k++)
-        for (size_t c = 0; c < x->stride; c++) {
-            size_t i = c < x->count ? c : 0, v = index[i * x->rows + k];
-            x->source[k * x->stride + c] = v;
-            if (c < x->count) {
-                x->column[uses[v]++] = k * x->stride + i;
-            }
-        }
+        for (size_t c = 0; c < x->stride; c++)
+            x->source[k * x->stride + c] =
+                index[(c < x->count ? c : 0) * x->rows + k];
+    for (size_t i = 0; in_turn && i < x->count; i++)
+        for (size_t k = 0; k < x->rows; k++)
+            list(x, index, uses, k, i);
+    for (size_t k = 0; !in_turn && k < x->rows; k++)
+        for (size_t i = 0; i < x->count; i++)
+            list(x, index, uses, k, i);
 }
 
 bool nevh__scatter_map_init(nevh__scatter_map *x, size_t n, size_t rows,
-                            size_t count, const size_t index[]) {
+                            size_t count, const size_t index[], bool in_turn) {
     size_t *uses = nevh__array(n, sizeof *uses);
     if (!uses)
         return false;
@@ -62,7 +70,7 @@ bool nevh__scatter_map_init(nevh__scatter_map *x, size_t n, size_t rows,
     bool all = x->source && x->target && x->begin && x->column;
     if (all) {
         begin_lists(x, n, uses);
-        fill(x, index, uses);
+        fill(x, index, uses, in_turn);
     }
     free(uses);
     return all;

@@ -20,9 +20,11 @@ typedef struct {
 } nevh__scatter_map;
 
 /* For `count` instances whose variable k of instance i is index[i*rows + k] of
-   n; false when memory is out. */
+   n; false when memory is out.
+   in_turn  what instances give is added instance by instance, not variable by
+            variable */
 bool nevh__scatter_map_init(nevh__scatter_map *, size_t n, size_t rows,
-                            size_t count, const size_t index[]);
+                            size_t count, const size_t index[], bool in_turn);
 void nevh__scatter_map_clear(nevh__scatter_map *);
 /* Fills rows of `stride` with all instances of `width` lanes, and then with
    column 0; adds such rows to what they belong to, and tells whether all are

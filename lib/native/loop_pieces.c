@@ -5,11 +5,11 @@
 #include <string.h>
 
 /* Instances of a piece, on the average, below which indices are read; and of a
-   loop. */
-enum { SHORT_PIECE = 16, FEWEST_INSTANCES = 16 };
+   loop that is no loop over pairs. */
+enum { SHORT_PIECE = 8, FEWEST_INSTANCES = 16 };
 
 bool nevh__is_loop(const nevh__planned *term) {
-    return term->term->decl.count >= FEWEST_INSTANCES;
+    return term->turned || term->term->decl.count >= FEWEST_INSTANCES;
 }
 
 bool nevh__has_loops(const nevh_field *f) {
@@ -98,6 +98,15 @@ void nevh__loop_pack(const nevh__term_loop *x) {
     }
     pack(&p, count);
     pack(&p, 0);
+}
+
+void nevh__loop_pack_all(nevh__writer *w, const uint32_t column[],
+                         size_t count) {
+    packing p = {.w = w};
+    for (size_t i = 0; i < count; i++)
+        pack(&p, column[i]);
+    if (count % 2)
+        pack(&p, 0);
 }
 
 size_t nevh__loop_constants(const nevh__term_loop *x) {

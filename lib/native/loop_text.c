@@ -295,12 +295,12 @@ static void indent(nevh__writer *w, size_t from, int more) {
     free(text);
 }
 
-/* Differences in the order of instances, others of variables. */
+/* Differences and pairs in the order of instances, others of variables. */
 static void write_adds_for_readers(const nevh__term_loop *x) {
     static const char each[] =
         "        for (size_t i = from; i < until; i++)%s\n";
     nevh__writer *w = x->s->w;
-    bool together = x->method && x->n_vars > 1;
+    bool together = (x->method || x->s->term->turned) && x->n_vars > 1;
     if (together)
         nevh__write(w, each, " {");
     for (size_t v = 0; v < x->n_vars; v++) {
@@ -355,8 +355,10 @@ void nevh__write_asked(const nevh__slope_text *s) {
 
 /* Exact ones, or differences alike. */
 static bool write_part(const nevh__term_loop *x) {
-    return x->n_vars == 0 ||
-           (x->s->w->readable ? write_for_readers : write_block)(x);
+    bool pairs = x->s->term->turned && !x->method;
+    return x->n_vars == 0 || (x->s->w->readable ? write_for_readers
+                              : pairs           ? nevh__write_pairs
+                                                : write_block)(x);
 }
 
 void nevh__loop_take_pass(nevh__term_loop *x, int i) {

@@ -64,6 +64,10 @@ bool nevh__loop_has_common_step(const nevh__planned *, size_t k);
 /* Appends to the numbers, as pairs of 32 bits: of each piece its first instance
    and what that reads; or what instances read, variable after variable. */
 void nevh__loop_pack(const nevh__term_loop *);
+/* Appends a column, two numbers of 32 bits to a double; an odd one has 0 behind. */
+void nevh__loop_pack_all(nevh__writer *, const uint32_t column[], size_t count);
+/* loop_pairs.c: the loop over blocks of pairs, of exact slopes. */
+bool nevh__write_pairs(const nevh__term_loop *);
 
 static inline bool nevh__is_tape(const nevh_term *is) {
     return is->gradient == nevh__tape_block_gradient;

@@ -73,6 +73,18 @@ static void name_at_state(nevh__writer *w, const nevh__formula_text *f,
     }
 }
 
+/* Derivative k of an instance; `first` is the id of instance 0. */
+static void add_derivative(sum *s, nevh__formula_text *f, unsigned first,
+                           size_t k, size_t instance) {
+    char name[NEVH__NAME];
+    if (!nevh__slope_reads(&s->of, k))
+        return;
+    f->id = first + (unsigned)instance;
+    nevh__derivative_name(f, s->of.kick ? NEVH__Q : NEVH__P,
+                          k - nevh__first_of(&s->of), name);
+    add_part(s, nevh__index(s->of.term, instance, k), name);
+}
+
 static bool write_exact(sum *s) {
     const nevh_term *is = &s->of.term->term->decl;
     nevh__formula_text f = {.tape = is->params,
@@ -86,14 +98,13 @@ static bool write_exact(sum *s) {
         if (!nevh__write_gradient(s->of.w, &f,
                                   s->of.kick ? NEVH__BY_Q : NEVH__BY_P))
             return false;
-    for (size_t k = nevh__first_of(&s->of); k < nevh__end_of(&s->of); k++)
-        for (size_t i = 0; i < is->count && nevh__slope_reads(&s->of, k); i++) {
-            char name[NEVH__NAME];
-            f.id = first + (unsigned)i;
-            nevh__derivative_name(&f, s->of.kick ? NEVH__Q : NEVH__P,
-                                  s->of.kick ? k : k - s->of.term->nq, name);
-            add_part(s, nevh__index(s->of.term, i, k), name);
-        }
+    size_t begin = nevh__first_of(&s->of), end = nevh__end_of(&s->of);
+    for (size_t i = 0; s->of.term->turned && i < is->count; i++)
+        for (size_t k = begin; k < end; k++)
+            add_derivative(s, &f, first, k, i);
+    for (size_t k = begin; !s->of.term->turned && k < end; k++)
+        for (size_t i = 0; i < is->count; i++)
+            add_derivative(s, &f, first, k, i);
     return true;
 }
 

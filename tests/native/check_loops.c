@@ -47,6 +47,21 @@ static const char bodies[] =
     "[effects]\nkinetic = sum(i = 1..N, (p_x[i]^2 + p_y[i]^2)/(2*m[i]))\n"
     "gravity = sum(i = 1..N, j = i+1..N, -m[i]*m[j]/sqrt((x[i] - x[j])^2 + "
     "(y[i] - y[j])^2 + 0.1))\n";
+/* Pairs of two kinds of bodies, and of bodies that have three coordinates in another
+   order. */
+static const char kinds[] =
+    "[parameters]\nN = %d\n"
+    "[coordinates]\nx[i = 1..N] = sin(7*i)*i\nu[i = 1..N+3] = cos(5*i)*i\n"
+    "[effects]\nkinetic = sum(i = 1..N, p_x[i]^2/2) + sum(i = 1..N+3, "
+    "p_u[i]^2/4)\n"
+    "attraction = sum(i = 1..N, j = 1..N+3, -i/sqrt((x[i] - u[j])^2 + 0.2))\n";
+static const char fluid[] =
+    "[parameters]\nN = %d\n"
+    "[coordinates]\nx[i = 1..N] = 2*i\ny[i = 1..N] = cos(5*i)\n"
+    "z[i = 1..N] = sin(3*i)\n"
+    "[effects]\nkinetic = sum(i = 1..N, (p_x[i]^2 + p_y[i]^2 + p_z[i]^2)/2)\n"
+    "attraction = sum(i = 1..N, j = i+1..N, -1/((y[j] - y[i])^2 + (x[i] - "
+    "x[j])^2 + (z[i] - z[j])^2)^3)\n";
 /* Every other mass, and three in a row. */
 static const char apart[] =
     "[parameters]\nN = %d\n"
@@ -60,7 +75,8 @@ static const struct {
     int count;
 } cases[] = {{chain, 33},   {chain, 600}, {chain, 1100}, {driven, 517},
              {ring, 17},    {ring, 513},  {lattice, 9},  {lattice, 24},
-             {lattice, 40}, {bodies, 8},  {bodies, 50},  {apart, 300}};
+             {lattice, 40}, {bodies, 8},  {bodies, 50},  {apart, 300},
+             {kinds, 5},    {kinds, 21},  {fluid, 7},    {fluid, 19}};
 enum { CASES = sizeof cases / sizeof *cases };
 
 static nevh_scene *counted(const char *format, int count) {
@@ -223,4 +239,58 @@ TEST(text_does_not_grow) {
         ck_assert_uint_lt(length_of(texts[i], 150),
                           length_of(texts[i], 40) + 100);
     ck_assert_uint_lt(length_of(lattice, 190), length_of(lattice, 90) + 100);
+}
+
+/* Pairs of bodies go by blocks, and nothing else does. */
+TEST(pairs_have_blocks) {
+    static const struct {
+        const char *text;
+        int count;
+        bool blocks;
+    } texts[] = {{bodies, 8, true},   {kinds, 9, true},    {fluid, 9, true},
+                 {bodies, 5, false},  {chain, 100, false}, {ring, 100, false},
+                 {lattice, 9, false}, {apart, 50, false}};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        nevh_scene *scene = counted(texts[i].text, texts[i].count);
+        run r = begin(scene, nevh_verlet, nevh_exact, false, NEVH_NATIVE_NEVER);
+        nevh__writer w = {0};
+        ck_assert(nevh__native_write(&w, &r.s->work));
+        ck_assert_msg(!!strstr(w.text, "= turned(") == texts[i].blocks,
+                      "case %zu", i);
+        nevh__writer_free(&w);
+        end(&r);
+        nevh_scene_free(scene);
+    }
+}
+
+/* Orbits side by side give the bits of one alone. */
+TEST_EACH(pairs_side_by_side, 4) {
+    static const struct {
+        const char *text;
+        int count;
+    } texts[] = {{bodies, 8}, {bodies, 50}, {kinds, 6}, {fluid, 19}};
+    nevh_scene *scene = counted(texts[_i].text, texts[_i].count);
+    run one = begin(scene, nevh_verlet, nevh_exact, false, NEVH_NATIVE_NEVER);
+    size_t n = 2 * one.n;
+    double *many = calloc(NEVH__LANES * n, sizeof *many);
+    for (size_t k = 0; k < NEVH__LANES * n; k++)
+        many[k] = one.z[k / NEVH__LANES];
+    nevh_options o = {.gradient = nevh_exact,
+                      .width = NEVH__LANES,
+                      .native = NEVH_NATIVE_NEVER};
+    nevh_stepper *s =
+        nevh_stepper_new(nevh_scene_system(scene), nevh_verlet, &o);
+    ck_assert_int_eq(
+        nevh_run(s, 0, 0.01, 9, many, many + NEVH__LANES * one.n, NULL, 0),
+        NEVH_OK);
+    ck_assert_int_eq(nevh_run(one.s, 0, 0.01, 9, one.z, one.z + one.n, NULL, 0),
+                     NEVH_OK);
+    for (size_t k = 0; k < NEVH__LANES * n; k++)
+        ck_assert_msg(memcmp(&many[k], &one.z[k / NEVH__LANES], sizeof *many) ==
+                          0,
+                      "number %zu", k);
+    nevh_stepper_free(s);
+    free(many);
+    end(&one);
+    nevh_scene_free(scene);
 }

@@ -53,6 +53,41 @@ INLINE void add_at(double *to, const place *at, const double *x, size count) {
         to[at[i]] += x[i];
 }
 
+/* Pairs: which lanes are there, by bits; others are given -0.0, which changes nothing
+   that it is added to. */
+typedef long long lanes __attribute__((vector_size(64), aligned(8)));
+INLINE lanes lanes_of(place bits) {
+    const long long b = bits;
+    const lanes all = {b, b, b, b, b, b, b, b};
+    return (all & (lanes){1, 2, 4, 8, 16, 32, 64, 128}) != 0;
+}
+
+INLINE wide only(wide x, lanes there) {
+    return (wide)(((lanes)x & there) | ((lanes)ALL(-0.0) & ~there));
+}
+
+/* Lane i is lane i + by of x, modulo 8. */
+INLINE wide turned(wide x, size by) {
+#ifdef __clang__
+    double twice[16];
+    *(wide *)twice = *(wide *)(twice + 8) = x;
+    return *(const wide *)(twice + by % 8);
+#else
+    const long long n = (long long)by;
+    return (wide)__builtin_shuffle((lanes)x,
+                                   (lanes){0, 1, 2, 3, 4, 5, 6, 7} +
+                                       (lanes){n, n, n, n, n, n, n, n});
+#endif
+}
+
+INLINE void store_row(double *to, wide x, size left) {
+    if (left >= 8)
+        *(wide *)to = x;
+    else
+        for (size i = 0; i < left; i++)
+            to[i] = x[i];
+}
+
 INLINE double sum_of(wide x) {
     return ((x[0] + x[1]) + (x[2] + x[3])) + ((x[4] + x[5]) + (x[6] + x[7]));
 }
