@@ -176,6 +176,7 @@ libnevh_core_la_SOURCES = \
 	lib/native/nystrom_text.c \
 	lib/native/stage_text.c \
 	lib/native/noise_text.c \
+	lib/native/watch_text.c \
 	lib/native/energy_text.c \
 	lib/native/tao_text.c \
 	lib/native/adaptive_verlet_text.c \
@@ -206,6 +207,7 @@ libnevh_core_la_SOURCES = \
 	lib/run/section_level.c \
 	lib/diagnose/energy_private.h \
 	lib/diagnose/energy.c \
+	lib/diagnose/energy_quiet.c \
 	lib/diagnose/energy_book.c \
 	lib/diagnose/energy_book_private.h \
 	lib/diagnose/energy_scale.c \
@@ -258,6 +260,7 @@ libnevh_core_la_SOURCES = \
 	lib/ensemble/lanes.c \
 	lib/ensemble/own.c \
 	lib/ensemble/observe.c \
+	lib/ensemble/watch.c \
 	lib/ensemble/outcomes/outcome_private.h \
 	lib/ensemble/outcomes/outcomes.c \
 	lib/ensemble/outcomes/state.c \

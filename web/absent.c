@@ -130,8 +130,9 @@ double gsl_cdf_ugaussian_Pinv(const double x) {
 }
 
 /* Steps that would have to be compiled. */
-void nevh__native_plan(nevh_work *w, char why[NEVH__WHY_NATIVE]) {
-    (void)w;
+void nevh__native_plan(nevh_work *w, const nevh__watched *watched,
+                       char why[NEVH__WHY_NATIVE]) {
+    (void)w, (void)watched;
     why[0] = '\0';
 }
 void nevh__native_free(nevh__native *x) {

@@ -172,12 +172,16 @@ static void step_together(nevh_chaos *c, double steps) {
     pass_steps(c, steps);
 }
 
+/* Steps since the last multiple of the stride. */
+static double steps_since(const nevh_chaos *c, size_t start) {
+    uint64_t done = (uint64_t)c->start[start].clock.done;
+    return (double)(done % c->batch->stride);
+}
+
 /* Until the next look at a start. */
 static double steps_to_look(const nevh_chaos *c, size_t start) {
-    double done = c->start[start].clock.done;
-    double stride = (double)c->batch->stride;
-    return fmin(c->batch->orbits[start].last - done,
-                stride - fmod(done, stride));
+    double left = c->batch->orbits[start].last - c->start[start].clock.done;
+    return fmin(left, (double)c->batch->stride - steps_since(c, start));
 }
 
 /* Steps of some ten milliseconds, after which the run may have to end. */
@@ -249,8 +253,7 @@ static bool look(nevh_chaos *c, size_t start) {
     orbit *at = &x->orbits[start];
     const nevh__chaos_clock *clock = &c->start[start].clock;
     bool over = clock->done >= at->last || at->report.status;
-    if (at->report.status ||
-        !(over || fmod(clock->done, (double)x->stride) == 0))
+    if (at->report.status || !(over || steps_since(c, start) == 0))
         return over;
     if (!isfinite(nevh__chaos_look(c, start))) {
         nevh__fail(&at->report, NEVH_EDOM,

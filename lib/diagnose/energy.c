@@ -25,6 +25,7 @@ static void lay_out(nevh__arena *a, void *energy) {
     e->steps = nevh__arena_take(a, width, sizeof *e->steps);
     e->next_look = nevh__arena_take(a, width, sizeof *e->next_look);
     e->started = nevh__arena_take(a, width, sizeof *e->started);
+    e->sums = nevh__arena_take(a, 3 * width, sizeof(double));
     e->effects = nevh__arena_take(a, effects, sizeof(double));
     e->state = nevh__arena_take(a, 2 * n, sizeof(double));
     e->booking = nevh__arena_take(a, 3 * n, sizeof(double));
@@ -185,6 +186,11 @@ static int begin(nevh_energy *e, size_t lane, double t, const double q[],
     return status;
 }
 
+static void take_size(nevh_energy *e, size_t lane, double size) {
+    e->largest[lane] = fmax(e->largest[lane], size);
+    e->seen[lane] = fmax(e->seen[lane], fabs(nevh_energy_error(e, lane)));
+}
+
 /* The size of the energies that rounding is of: looked for from time to time,
    and where the error rises, which it does where they are large. */
 static int look(nevh_energy *e, size_t lane, double t, const double q[],
@@ -193,16 +199,14 @@ static int look(nevh_energy *e, size_t lane, double t, const double q[],
     gather(e, lane, q, p);
     int status = nevh__field_moving_values(
         e->field, 1, &t, e->state, e->state + e->n, &h, &roundoff, &size);
-    if (!status)
-        e->largest[lane] = fmax(e->largest[lane], size);
-    e->seen[lane] = fmax(e->seen[lane], fabs(nevh_energy_error(e, lane)));
+    take_size(e, lane, status ? 0 : size);
     return status;
 }
 
 static bool is_time_to_look(nevh_energy *e, size_t lane) {
-    static const double higher = 1.5;
     return e->trend[lane].samples >= e->next_look[lane] ||
-           fabs(nevh_energy_error(e, lane)) > higher * e->seen[lane];
+           fabs(nevh_energy_error(e, lane)) >
+               nevh__energy_higher * e->seen[lane];
 }
 
 /* Some hundred times in a run of any length. */
@@ -274,22 +278,30 @@ static int add_error(nevh_energy *e, size_t lane, double t) {
                           "the balance of the energy is not finite at t = "
                           "%.9g: %s does not account for whole steps",
                           t, e->followed->work.integrator->name);
-    nevh__trend_add(&e->trend[lane], t, error_now(e, lane),
-                    e->largest[lane] / e->scale[lane]);
+    double error = error_now(e, lane);
+    if (e->only_largest)
+        nevh__trend_add_most(&e->trend[lane], 1, fabs(error), error);
+    else
+        nevh__trend_add(&e->trend[lane], t, error,
+                        e->largest[lane] / e->scale[lane]);
     return NEVH_OK;
 }
 
-static int observe_lane(nevh_energy *e, size_t lane, size_t step,
-                        const double q[], const double p[]) {
+static int add_state(nevh_energy *e, size_t lane, size_t step, const double q[],
+                     const double p[]) {
     double t = e->t[lane];
     int status = e->started[lane] ? NEVH_OK : begin(e, lane, t, q, p);
     e->steps[lane] = step;
     if (!status && e->width == 1)
         look_back(e, t, q, p);
-    if (!status)
-        status = add_error(e, lane, t);
+    return status ? status : add_error(e, lane, t);
+}
+
+static int observe_lane(nevh_energy *e, size_t lane, size_t step,
+                        const double q[], const double p[]) {
+    int status = add_state(e, lane, step, q, p);
     if (!status && is_time_to_look(e, lane))
-        status = look(e, lane, t, q, p);
+        status = look(e, lane, e->t[lane], q, p);
     look_again_later(e, lane);
     return status;
 }
@@ -320,6 +332,26 @@ static void value_of_lane(nevh_energy *e, size_t lane, const double q[],
         e->h[lane] = NAN;
 }
 
+/* All lanes whose turn it is, side by side. */
+static void look_at_lanes(nevh_energy *e, bool on[], const double q[],
+                          const double p[]) {
+    double *h = e->sums, *roundoff = h + e->width, *size = roundoff + e->width;
+    bool due = false;
+    for (size_t lane = 0; !due && lane < e->width; lane++)
+        due = on[lane] && is_time_to_look(e, lane);
+    bool all = due && !nevh__field_moving_values(e->field, e->width, e->t, q, p,
+                                                 h, roundoff, size);
+    for (size_t lane = 0; due && lane < e->width; lane++) {
+        if (!on[lane] || !is_time_to_look(e, lane))
+            continue;
+        if (all)
+            take_size(e, lane, size[lane]);
+        else
+            on[lane] = !look(e, lane, e->t[lane], q, p);
+        look_again_later(e, lane);
+    }
+}
+
 void nevh__energy_observe_lanes(nevh_energy *e, bool on[], const size_t step[],
                                 const double t[], const double q[],
                                 const double p[]) {
@@ -331,8 +363,9 @@ void nevh__energy_observe_lanes(nevh_energy *e, bool on[], const size_t step[],
             value_of_lane(e, lane, q, p);
     for (size_t lane = 0; lane < width; lane++)
         if (on[lane])
-            on[lane] = isfinite(e->h[lane]) &&
-                       !observe_lane(e, lane, step[lane], q, p);
+            on[lane] =
+                isfinite(e->h[lane]) && !add_state(e, lane, step[lane], q, p);
+    look_at_lanes(e, on, q, p);
     e->report = (nevh__report){0}; /* the lane's that failed, alone */
 }
 

@@ -12,6 +12,20 @@
 void nevh__energy_observe_lanes(nevh_energy *, bool on[], const size_t step[],
                                 const double t[], const double q[],
                                 const double p[]);
+/* States side by side at several steps, `count` rows of values of H, so far apart: those
+   at which nothing but the error is asked for.
+   returns  how many of the first are: a state must be looked at from time to time, and
+            where the error rises, or is not finite */
+size_t nevh__energy_quiet(const nevh_energy *, const bool on[], size_t count,
+                          const double h[], size_t pitch);
+/* At most so many follow. */
+size_t nevh__energy_most_quiet(const nevh_energy *, const bool on[]);
+/* Observes them; step i is at t0 + (step + i) dt. */
+void nevh__energy_observe_quiet(nevh_energy *, const bool on[],
+                                const size_t step[], double t0, double dt,
+                                size_t count, const double h[], size_t pitch);
+/* Before the first observation: nothing but the largest error is asked for. */
+void nevh__energy_ask_largest(nevh_energy *);
 /* For a system whose lanes have constants of their own: a lane takes those of each
    term, and the rounding and noise of a stepper of them. */
 void nevh__energy_lane_take(nevh_energy *, size_t lane, const double *const c[],

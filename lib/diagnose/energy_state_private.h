@@ -14,6 +14,7 @@ struct nevh_energy {
     size_t n, width;
     const nevh_stepper *followed;             /* NULL: errors are of H alone */
     bool begun;                               /* any of the lanes */
+    bool only_largest;                        /* error is asked for */
     double given_scale;                       /* by the user; 0: found */
     void *memory;                             /* of all arrays */
     double *t, *h, *initial, *scale, *gained; /* width each */
@@ -28,6 +29,7 @@ struct nevh_energy {
     double *noise, *blur;      /* width: of the gradient, relative */
     size_t *steps, *next_look; /* width */
     bool *started;             /* width */
+    double *sums;              /* 3 x width: of the terms, lost, and sizes */
     double *effects;
     double *state;         /* 2n: one lane */
     double *booking;       /* 3n: of the book */
@@ -38,6 +40,9 @@ struct nevh_energy {
     nevh__trend *trend;
     nevh__report report;
 };
+
+/* An |error| above so many times the one at the last look is one that rises. */
+static const double nevh__energy_higher = 1.5;
 
 /* At the first state, which is in `state`: |H0| of what reads something, or the
    largest of its effects, or, where there is none, that of the orbit. */

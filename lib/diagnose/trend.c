@@ -56,6 +56,14 @@ void nevh__trend_add(nevh__trend *s, double t, double e, double met) {
     add_to_bin(s, t, e, met);
 }
 
+void nevh__trend_add_most(nevh__trend *s, size_t samples, double most,
+                          double last) {
+    s->samples += samples;
+    s->most = fmax(s->most, most);
+    s->last = last;
+    s->bins = 1;
+}
+
 void nevh__trend_multiply(nevh__trend *s, double factor) {
     s->squares *= factor * factor;
     s->most *= factor;

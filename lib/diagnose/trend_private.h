@@ -27,6 +27,9 @@ typedef struct {
 
 /* met  the largest energies so far, in units of the errors' scale */
 void nevh__trend_add(nevh__trend *, double t, double e, double met);
+/* So many errors, of whose series nothing is asked but the largest. */
+void nevh__trend_add_most(nevh__trend *, size_t samples, double most,
+                          double last);
 /* The same series, errors and energies times a factor. */
 void nevh__trend_multiply(nevh__trend *, double factor);
 /* Fills the report's members on the series, from samples to straightness, rate,

@@ -15,7 +15,7 @@ static void take_outcome(nevh_ensemble *e, size_t i) {
     e->moving |= type->info.takes && e->outcomes[i].decl.quantity.velocities;
     e->looks_back |= type->branches;
     e->has_energy |= type->of_energy;
-    e->watches |= type->step || type->of_energy || type->of_chaos || crosses;
+    e->watches |= type->step || type->of_energy || crosses;
     if (crosses)
         e->crossing_of[e->n_crossings++] = i;
 }
@@ -81,7 +81,8 @@ int nevh__ensemble_stepper(nevh_ensemble *e, const nevh_system *system,
     int status = repeat_state(e, width, &o, &room);
     if (status)
         return status;
-    *s = nevh_stepper_new(system, e->options.integrator, &o);
+    *s = nevh__stepper_watching(system, e->options.integrator, &o,
+                                width > 1 ? nevh__ensemble_watched(e) : NULL);
     free(room);
     if (!*s)
         return nevh__no_memory(&e->report);
@@ -96,6 +97,11 @@ static int plan_energy(nevh_ensemble *e, const nevh_options *options) {
         return nevh__no_memory(&e->report);
     if (e->options.energy_scale != 0)
         nevh_energy_set_scale(e->energy, e->options.energy_scale);
+    bool verdict = false;
+    for (size_t i = 0; i < e->n_outcomes; i++)
+        verdict |= e->outcomes[i].type == &nevh__outcome_verdict;
+    if (!verdict)
+        nevh__energy_ask_largest(e->energy);
     nevh_energy_follow(e->energy, e->stepper);
     nevh_energy_expect(e->energy, e->stepper);
     return nevh_energy_status(e->energy)
@@ -224,6 +230,8 @@ static int plan(nevh_ensemble *e) {
     e->stride = nevh__padded(e->width);
     e->alone = e->width == 1;
     e->together = !autonomous;
+    if (!nevh__ensemble_watch_plan(e))
+        return nevh__no_memory(&e->report);
     status = nevh__ensemble_stepper(e, system, &o, e->width, &e->stepper);
     nevh_options spare = o; /* it steps where others fail, and last */
     spare.native = NEVH_NATIVE_NEVER;
@@ -232,6 +240,8 @@ static int plan(nevh_ensemble *e) {
     e->narrow = e->spare;
     if (!status && e->has_energy)
         status = plan_energy(e, &o);
+    if (!status && !nevh__ensemble_watch_begin(e))
+        status = nevh__no_memory(&e->report);
     if (!status && e->moving)
         status = plan_motion(e, &o);
     if (!status)
@@ -270,6 +280,7 @@ void nevh_ensemble_free(nevh_ensemble *e) {
                 nevh__record_of(e, i / e->width, i % e->width));
     nevh_energy_free(e->energy);
     nevh__chaotic_free(e->chaotic);
+    nevh__ensemble_watch_free(e->watch);
     nevh__ensemble_free_crossings(e);
     nevh_field_free(e->motion);
     nevh_stepper_free(e->stepper);

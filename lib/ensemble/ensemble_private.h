@@ -42,6 +42,7 @@ typedef struct {
 
 typedef struct nevh__crossing_lanes nevh__crossing_lanes;
 typedef struct nevh__chaotic nevh__chaotic;
+typedef struct nevh__watch nevh__watch;
 
 struct nevh_ensemble {
     const nevh_system *system;
@@ -66,7 +67,8 @@ struct nevh_ensemble {
     size_t crossing_lane;                 /* whose points are told */
     nevh__crossing_lanes *crossing_lanes; /* NULL: not asked for, or alone */
     nevh__chaotic *chaotic;               /* NULL: not asked for */
-    nevh_field *motion;                   /* of velocities; or NULL */
+    nevh__watch *watch; /* of several steps at once; NULL: none can be */
+    nevh_field *motion; /* of velocities; or NULL */
     gsl_root_fsolver *root;
 
     void *memory;          /* holds all arrays below */
@@ -121,6 +123,17 @@ void nevh__ensemble_move(nevh_ensemble *, const double t[], const double q[],
 void nevh__ensemble_value(const nevh_ensemble *, size_t o, const double t[],
                           const double q[], const double p[], double values[]);
 
+/* watch.c: values of all outcomes as compiled steps are taken.  Whether that could be:
+   before the stepper is planned, and after.  Neither leaves e->watch where it can not;
+   false: memory is out. */
+bool nevh__ensemble_watch_plan(nevh_ensemble *);
+bool nevh__ensemble_watch_begin(nevh_ensemble *);
+void nevh__ensemble_watch_free(nevh__watch *); /* NULL is allowed */
+const nevh__watched *nevh__ensemble_watched(const nevh_ensemble *);
+/* Takes steps of all lanes from number `from` on, up to the one whose state has to be
+   looked at, but not more than `steps`.  Returns how many. */
+size_t nevh__ensemble_watch(nevh_ensemble *, size_t from, size_t steps);
+
 /* outcomes/crossings.c: crossings of lanes that are to be looked at and are not
    over. */
 int nevh__ensemble_plan_crossings(nevh_ensemble *);
@@ -140,7 +153,10 @@ void nevh__chaotic_finish(nevh_ensemble *);
 /* All orbits, where no other outcome is asked for; else returns false. */
 bool nevh__chaotic_run(nevh_ensemble *);
 
-/* lanes.c: moves of columns. */
+/* lanes.c: the values and times of the last states become those of the ones before;
+   the states are kept where an event may be looked for.  h: of the step from here. */
+void nevh__ensemble_look_back(nevh_ensemble *, double h);
+/* Moves of columns. */
 void nevh__lane_to_narrow(nevh_ensemble *, const double q[], const double p[],
                           const double memory[], size_t lane);
 /* A step of h of the narrow stepper. */

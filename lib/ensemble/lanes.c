@@ -126,9 +126,7 @@ static bool fill(nevh_ensemble *e) {
 
 /* Steps. */
 
-/* The values and times of the last states become those of the ones before; the
-   states are kept where an event may be looked for. */
-static void look_back(nevh_ensemble *e, double h) {
+void nevh__ensemble_look_back(nevh_ensemble *e, double h) {
     nevh__snapshot last = e->ago2;
     size_t lanes = e->stride * sizeof(double);
     e->ago2 = e->ago1;
@@ -203,20 +201,24 @@ static size_t steps_unseen(const nevh_ensemble *e, size_t most) {
     return steps > 0 ? (size_t)steps : 0;
 }
 
-/* Steps that nobody looks at.  Returns how many. */
+/* Steps whose states nobody looks at.  Returns how many. */
 static size_t leap(nevh_ensemble *e) {
     nevh_stepper *s = e->stepper;
     size_t which = 0, steps = steps_unseen(e, PATIENCE);
-    if (e->watches || !steps || !nevh__steps_are_plain(s))
+    if (!steps || (e->watches && !e->watch) || !nevh__steps_are_plain(s))
         return 0;
     any_busy(e, &which);
     size_t from = s->taken = e->lanes[which].step;
-    nevh__advance_unseen(s, e->options.t_start, e->h, from + steps, e->q, e->p);
+    if (e->watches)
+        s->taken += nevh__ensemble_watch(e, from, steps);
+    else
+        nevh__advance_unseen(s, e->options.t_start, e->h, from + steps, e->q,
+                             e->p);
     pass_steps(e, s->taken - from);
     return s->taken - from;
 }
 
-/* look_back for one lane. */
+/* The same for one lane. */
 static void look_back_in(nevh_ensemble *e, size_t lane, double h) {
     nevh__snapshot *to = &e->ago2, *from = &e->ago1;
     size_t n = e->n, width = e->width, rows = e->stepper->rows;
@@ -304,12 +306,13 @@ static void run_lanes(nevh_ensemble *e) {
         }
         if (!any_busy(e, &which))
             break;
+        steps += leap(e);
         if (e->watches)
-            look_back(e, e->h);
-        size_t unseen = leap(e);
+            nevh__ensemble_look_back(e, e->h);
         step_together(e);
-        asks = (to_look(e) && look_and_end(e)) || unseen + 1 >= PATIENCE ||
-               ++steps % PATIENCE == 0;
+        bool ended = to_look(e) && look_and_end(e);
+        asks = ended || ++steps >= PATIENCE;
+        steps = asks ? 0 : steps;
         e->stopped |= nevh__ensemble_ends(e);
     }
 }
@@ -330,7 +333,8 @@ static int observe(void *ensemble, size_t step, double t, const double q[],
     memcpy(e->p, p, e->n * sizeof *p);
     nevh__ensemble_look(e);
     if (!l->over)
-        look_back(e, 0); /* the step from here is known when it is taken */
+        nevh__ensemble_look_back(
+            e, 0); /* the step from here is known when it is taken */
     return l->over || nevh__ensemble_ends(e);
 }
 

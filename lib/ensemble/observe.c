@@ -97,6 +97,7 @@ static void *turn_to_outcome(nevh__observation *at, size_t o) {
     at->outcome = o;
     at->decl = &entry->decl;
     at->value = e->now.value[i];
+    at->values = &e->now.value[i];
     at->value_before = e->ago1.value[i];
     return entry->records + at->lane * entry->type->size;
 }
@@ -143,7 +144,8 @@ static void look_at_energy(nevh_ensemble *e) {
 }
 
 void nevh__ensemble_look(nevh_ensemble *e) {
-    nevh__observation at = {.ensemble = e, .t_start = e->options.t_start};
+    nevh__observation at = {
+        .ensemble = e, .t_start = e->options.t_start, .count = 1};
     evaluate(e);
     if (e->energy)
         look_at_energy(e);

@@ -113,3 +113,9 @@ void nevh__tape_block(size_t width, const double t[], const double q[],
     else
         run_most(&job);
 }
+
+void nevh__tape_quantity(const void *tape, size_t width, const double t[],
+                         const double q[], const double p[], const double v[],
+                         double values[]) {
+    nevh__tape_block(width, t, q, p, v, tape, values);
+}

@@ -139,6 +139,10 @@ bool nevh__tape_breaks(const nevh__tape *);
 /* One more than the largest k that the builder was asked for, read or not: what
    a term must declare as nq, np, nc. */
 size_t nevh__tape_count(const nevh__tape *, nevh__variable);
+/* A tape as a nevh_quantity: its constants are velocities. */
+void nevh__tape_quantity(const void *tape, size_t width, const double t[],
+                         const double q[], const double p[], const double v[],
+                         double values[]);
 /* True if two tapes have the same operations and numbers. */
 bool nevh__tape_same(const nevh__tape *, const nevh__tape *);
 /* True if they have the same operations and as many numbers, which may differ. */

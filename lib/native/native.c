@@ -121,19 +121,24 @@ static const struct {
     bool (*fill)(nevh__native *, const nevh_work *); /* NULL: of series */
     bool loops;   /* takes states of any length */
     bool by_lane; /* takes orbits that have constants of their own */
+    bool watches; /* block_driver.h takes its steps */
 } families[] = {
-    {&nevh_splitting_kernel, nevh__write_splitting, fill_splitting, true, true},
-    {&nevh_runge_kutta_kernel, nevh__write_runge_kutta, fill_runge_kutta, true,
+    {&nevh_splitting_kernel, nevh__write_splitting, fill_splitting, true, true,
      true},
-    {&nevh_nystrom_kernel, nevh__write_nystrom, fill_nystrom, false, false},
-    {&nevh_gauss_kernel, nevh__write_stages, fill_stages, false, true},
-    {&nevh_lobatto_kernel, nevh__write_stages, fill_stages, false, true},
-    {&nevh_implicit_euler_kernel, nevh__write_stages, fill_stages, false, true},
-    {&nevh__implicit_kernel, nevh__write_stages, fill_stages, false, true},
-    {&nevh__tao_kernel, nevh__write_tao, fill_tao, false, false},
+    {&nevh_runge_kutta_kernel, nevh__write_runge_kutta, fill_runge_kutta, true,
+     true, true},
+    {&nevh_nystrom_kernel, nevh__write_nystrom, fill_nystrom, false, false,
+     true},
+    {&nevh_gauss_kernel, nevh__write_stages, fill_stages, false, true, false},
+    {&nevh_lobatto_kernel, nevh__write_stages, fill_stages, false, true, false},
+    {&nevh_implicit_euler_kernel, nevh__write_stages, fill_stages, false, true,
+     false},
+    {&nevh__implicit_kernel, nevh__write_stages, fill_stages, false, true,
+     false},
+    {&nevh__tao_kernel, nevh__write_tao, fill_tao, false, false, false},
     {&nevh__adaptive_verlet_kernel, nevh__write_adaptive_verlet,
-     fill_adaptive_verlet, false, false},
-    {&nevh__taylor_kernel, nevh__write_series, NULL, false, false}};
+     fill_adaptive_verlet, false, false, false},
+    {&nevh__taylor_kernel, nevh__write_series, NULL, false, false, false}};
 /* The steps' copies of the state stand on the stack, but for those of loops. */
 enum { MOST_NUMBERS = 8192 };
 enum { FAMILIES = sizeof families / sizeof *families };
@@ -196,6 +201,7 @@ static const char *obstacle(const nevh_work *w) {
 bool nevh__native_write(nevh__writer *text, nevh_work *w) {
     text->refusal = obstacle(w);
     text->width = w->width;
+    text->field = w->field;
     text->by_lane = w->field->lanes > 0;
     text->loops = !text->refusal && has_loops(w);
     return !text->refusal && families[family_of(w)].write(text, w);
@@ -354,14 +360,29 @@ static bool load(const nevh_work *w, nevh__native *x, const char *text,
     return x->library || x->compiler;
 }
 
+/* Steps that watch nothing, where what is to be watched has no text. */
+static bool write_watching(nevh__writer *text, nevh_work *w,
+                           const nevh__watched *watched) {
+    size_t i = family_of(w);
+    bool can =
+        i < FAMILIES && families[i].watches && w->width > 1 && !w->field->lanes;
+    text->watched = can ? watched : NULL;
+    if (text->watched && write_text(text, w) && !text->refusal)
+        return true;
+    nevh__writer_free(text);
+    *text = (nevh__writer){0};
+    return write_text(text, w);
+}
+
 static bool plan(nevh_work *w, nevh__native *x, nevh__writer *text,
-                 char why[NEVH__WHY_NATIVE]) {
+                 const nevh__watched *watched, char why[NEVH__WHY_NATIVE]) {
     bool always = w->options->native == NEVH_NATIVE_ALWAYS;
-    bool written = write_text(text, w);
+    bool written = write_watching(text, w, watched);
     if (text->refusal && always)
         snprintf(why, NEVH__WHY_NATIVE, "%s", text->refusal);
     if (!written || !fill(x, w))
         return false;
+    x->watches = text->watched;
     x->characters = strlen(text->text);
     bool compile = compiling_pays(w, x->characters);
     if (!load(w, x, text->text, compile, why)) {
@@ -376,7 +397,8 @@ static bool plan(nevh_work *w, nevh__native *x, nevh__writer *text,
     return of_series(w) ? take_series(w, x) : take_steps(x);
 }
 
-void nevh__native_plan(nevh_work *w, char why[NEVH__WHY_NATIVE]) {
+void nevh__native_plan(nevh_work *w, const nevh__watched *watched,
+                       char why[NEVH__WHY_NATIVE]) {
     const nevh_options *o = w->options;
     bool always = o->native == NEVH_NATIVE_ALWAYS;
     nevh__writer text = {0};
@@ -391,7 +413,7 @@ void nevh__native_plan(nevh_work *w, char why[NEVH__WHY_NATIVE]) {
     if (!always && seconds_foreseen(w) < loading_pays)
         return;
     nevh__native *x = nevh__array(1, sizeof *x);
-    if (x && plan(w, x, &text, why)) {
+    if (x && plan(w, x, &text, watched, why)) {
         w->native = x;
         why[0] = '\0';
     } else

@@ -52,6 +52,7 @@ typedef struct nevh__native {
     double *room; /* of states that are too long for the stack, or NULL */
     size_t kicks, drifts;   /* of a step */
     bool compared, differs; /* with the kernel's steps, or series */
+    bool watches;           /* it writes what is watched */
     bool keeps, kicks_first;
     bool whole;          /* what is kept is dH/dq and dH/dp */
     size_t flags_at;     /* halves of a state before what tells that */
@@ -108,7 +109,8 @@ bool nevh__write_used(nevh__writer *, char *text);
 
 /* Makes w->native if that is wanted, possible and worth while; `why`: else what
    is in the way, or "". */
-void nevh__native_plan(nevh_work *, char why[NEVH__WHY_NATIVE]);
+void nevh__native_plan(nevh_work *, const nevh__watched *,
+                       char why[NEVH__WHY_NATIVE]);
 /* Has what nevh__native_plan would compile of all compiled side by side, so that it
    is in the cache.  why: out, of each: what is in the way, or "". */
 void nevh__native_prepare(nevh_work *const[], size_t count,
@@ -130,6 +132,12 @@ void nevh__native_free(nevh__native *);                /* NULL is allowed */
    returns  how many; the next is to be taken by the kernel */
 size_t nevh__native_run(nevh_work *, double t0, double h, size_t from,
                         size_t steps, double q[], double p[]);
+
+/* The same, and writes what is watched after step i of them to values + i rows width,
+   a row each; 0 where nothing is watched, or was not yet compared. */
+size_t nevh__native_watch(nevh_work *, double t0, double h, size_t from,
+                          size_t steps, double q[], double p[],
+                          double values[]);
 
 /* One step, native where it can be. */
 static inline int nevh__native_step(nevh_work *w, double t, double h,

@@ -170,6 +170,8 @@ void nevh__write_driver(nevh__writer *w, bool keeps, size_t rows) {
     if (w->loops && !w->readable)
         write_long_driver(w, rows);
     else {
+        if (w->watched)
+            nevh__write_watch(w);
         nevh__write_table(w);
         nevh__write_lines(w, nevh__block_driver_text);
     }

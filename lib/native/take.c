@@ -37,12 +37,13 @@ static size_t count_kept(const nevh_work *w) {
 }
 
 static size_t take(const nevh_work *w, double t0, double h, size_t from,
-                   size_t steps, double q[], double p[], size_t counted[3]) {
+                   size_t steps, double q[], double p[], size_t counted[3],
+                   double *values) {
     const nevh__native *x = w->native;
     nevh__compiled_steps compiled = x->steps;
     return compiled(x->numbers, x->weights, x->times, x->kicks + x->drifts, t0,
                     h, from, steps, q, p, w->memory, counted,
-                    x->room ? nevh__aligned(x->room) : NULL);
+                    x->room ? nevh__aligned(x->room) : values);
 }
 
 /* Gradients at stages, and values that told the noise of differences. */
@@ -61,13 +62,13 @@ static void count_sweeps(nevh_work *w, const nevh__native *x,
 }
 
 static size_t take_steps(nevh_work *w, double t0, double h, size_t from,
-                         size_t steps, double q[], double p[]) {
+                         size_t steps, double q[], double p[], double *values) {
     const nevh__native *x = w->native;
     size_t kept = x->keeps ? count_kept(w) : 0;
     if (kept > 0 && kept < w->width)
         return 0; /* the kernel's step takes those that are missing */
     size_t counted[3] = {0, 0, 0};
-    size_t done = take(w, t0, h, from, steps, q, p, counted);
+    size_t done = take(w, t0, h, from, steps, q, p, counted, values);
     if (x->stages)
         count_sweeps(w, x, counted);
     else if (x->adapts)
@@ -75,7 +76,7 @@ static size_t take_steps(nevh_work *w, double t0, double h, size_t from,
                    counted[0] * x->first_drifts + counted[1] * x->drifts);
     else {
         if (done && done < steps) /* nothing has been stored */
-            done = take(w, t0, h, from, done, q, p, counted);
+            done = take(w, t0, h, from, done, q, p, counted, values);
         if (done)
             count(w, x, done, kept > 0);
         if (done && x->own_time)
@@ -151,7 +152,7 @@ static size_t compare(nevh_work *w, before *start, before *native, double t0,
                       double p[]) {
     nevh__native *x = w->native;
     keep(start, w, q, p);
-    size_t done = take_steps(w, t0, h, from, steps, q, p);
+    size_t done = take_steps(w, t0, h, from, steps, q, p, NULL);
     if (!done)
         return 0;
     keep(native, w, q, p);
@@ -188,6 +189,16 @@ size_t nevh__native_run(nevh_work *w, double t0, double h, size_t from,
     const nevh__native *x = w->native;
     if (!x->steps || x->differs || !nevh__field_at_hand(w->field))
         return 0;
-    return x->compared ? take_steps(w, t0, h, from, steps, q, p)
+    return x->compared ? take_steps(w, t0, h, from, steps, q, p, NULL)
                        : compare_first(w, t0, h, from, steps, q, p);
+}
+
+size_t nevh__native_watch(nevh_work *w, double t0, double h, size_t from,
+                          size_t steps, double q[], double p[],
+                          double values[]) {
+    const nevh__native *x = w->native;
+    return x && x->steps && x->watches && x->compared &&
+                   nevh__field_at_hand(w->field)
+               ? take_steps(w, t0, h, from, steps, q, p, values)
+               : 0;
 }

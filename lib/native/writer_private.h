@@ -46,7 +46,10 @@ typedef struct {
     bool takes_steps;  /* several at once: there is a function take_steps */
     bool own_time;     /* steps of a program take times of their own */
     size_t rows;       /* of DOF vectors, for them */
-    bool readable;     /* numbers stand in the text, functions are libm's */
+    const struct nevh__watched
+        *watched;            /* what is found of each state; or NULL */
+    const nevh_field *field; /* for that */
+    bool readable; /* numbers stand in the text, functions are libm's */
     const char
         *forms[NEVH__MOST_FORMS]; /* for readers: names that are defined */
     size_t form_count;
@@ -237,6 +240,19 @@ size_t nevh__slope_reach(nevh__writer *, nevh_field *, bool kick);
    derivatives by differences at the state y, the largest over a scale; of a
    field whose gradients are differences. */
 bool nevh__write_noise(nevh__writer *, const nevh_field *);
+/* Values that are found of each state as steps are taken of orbits side by side: of
+   formulas of coordinates and momenta, and of H. */
+typedef struct nevh__watched {
+    const nevh__tape *const *tapes;
+    size_t count;
+    bool energy;
+} nevh__watched;
+static inline size_t nevh__watched_rows(const nevh__watched *x) {
+    return x->count + x->energy;
+}
+/* A function watch(N, y, to) that writes a row of each to `to`.  false: there is no
+   text, and w->refusal may say why. */
+bool nevh__write_watch(nevh__writer *);
 /* For readers: a function energy(t, q, p), the value of H.  false: there is no
    text of a term, and w->refusal says why. */
 bool nevh__write_energy(nevh__writer *, const nevh_field *);

@@ -107,13 +107,14 @@ static int plan(nevh_stepper *s) {
     if (!status)
         status = plan_memory(s);
     if (!status)
-        nevh__native_plan(&s->work, s->why_native);
+        nevh__native_plan(&s->work, s->watched, s->why_native);
     return status;
 }
 
-nevh_stepper *nevh_stepper_new(const nevh_system *system,
-                               const nevh_integrator *integrator,
-                               const nevh_options *options) {
+nevh_stepper *nevh__stepper_watching(const nevh_system *system,
+                                     const nevh_integrator *integrator,
+                                     const nevh_options *options,
+                                     const nevh__watched *watched) {
     bool fits =
         system && nevh__width_fits(system->report.status ? 0 : system->n,
                                    options ? options->width : 1);
@@ -123,6 +124,7 @@ nevh_stepper *nevh_stepper_new(const nevh_system *system,
     if (options)
         s->options = *options;
     s->options.width = s->options.width ? s->options.width : 1;
+    s->watched = watched;
     size_t n = system->n, width = s->options.width;
     bool owned = own_options(&s->options, system->report.status ? 0 : n);
     s->work = (nevh_work){.integrator = integrator,
@@ -138,10 +140,17 @@ nevh_stepper *nevh_stepper_new(const nevh_system *system,
     fesetenv(&own);
     s->planned = status == NEVH_OK;
     s->revision = s->options.transform ? s->options.transform->revision : 0;
+    s->watched = NULL;
     if (status != NEVH_ENOMEM)
         return s;
     nevh_stepper_free(s);
     return NULL;
+}
+
+nevh_stepper *nevh_stepper_new(const nevh_system *system,
+                               const nevh_integrator *integrator,
+                               const nevh_options *options) {
+    return nevh__stepper_watching(system, integrator, options, NULL);
 }
 
 void nevh_stepper_free(nevh_stepper *s) {
@@ -331,7 +340,7 @@ bool nevh_stepper_foresee(nevh_stepper *s, double steps) {
     if (more)
         s->options.steps_foreseen = steps;
     if (more && !tried && s->options.native == NEVH_NATIVE_AUTO)
-        nevh__native_plan(&s->work, s->why_native);
+        nevh__native_plan(&s->work, s->watched, s->why_native);
     return nevh__native_pays(&s->work);
 }
 

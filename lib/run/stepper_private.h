@@ -31,8 +31,15 @@ struct nevh_stepper {
     double time_roundoff;  /* of last_t, where steps vary, by rounding */
     double before_t, before_roundoff; /* last_t and time_roundoff before that */
     char why_native[NEVH__WHY_NATIVE]; /* why steps are not native, or "" */
+    const nevh__watched *watched; /* by compiled steps, while it is planned */
 };
 
+/* nevh_stepper_new, for orbits side by side of which that is watched, if it can be:
+   nevh__native_watch. */
+nevh_stepper *nevh__stepper_watching(const nevh_system *,
+                                     const nevh_integrator *,
+                                     const nevh_options *,
+                                     const nevh__watched *);
 /* Why a scheme does not fit the system, or NEVH_OK. */
 int nevh__check_structure(nevh_stepper *);
 /* A step without looking whether the state is the one last returned. */

@@ -12,12 +12,6 @@ static bool fail(nevh__report *report, int status, const char *text) {
     return false;
 }
 
-static void evaluate(const void *tape, size_t width, const double t[],
-                     const double q[], const double p[], const double v[],
-                     double values[]) {
-    nevh__tape_block(width, t, q, p, v, tape, values);
-}
-
 /* LEFT - RIGHT, or LEFT alone where right is NULL, as a quantity. */
 static bool make_quantity(nevh__variant *x, const char *left, const char *right,
                           nevh_quantity *quantity, nevh__report *report) {
@@ -43,8 +37,8 @@ static bool make_quantity(nevh__variant *x, const char *left, const char *right,
     free(text);
     x->tapes.tapes = all;
     all[x->tapes.count++] = tape;
-    *quantity =
-        (nevh_quantity){evaluate, tape, nevh__tape_count(tape, NEVH__C) > 0};
+    *quantity = (nevh_quantity){nevh__tape_quantity, tape,
+                                nevh__tape_count(tape, NEVH__C) > 0};
     return true;
 }
 

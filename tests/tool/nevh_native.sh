@@ -98,6 +98,48 @@ has '^# native: steps are compiled where eight members or more have the same par
 exits 0 sweep pendulum --vary 'l = range(0.5, 2, 8)' $of_eight --native always
 has '^# native: steps are compiled$'
 
+# What is found of orbits has the same bits with steps compiled or not, taken several at
+# once or, beside an outcome that looks at each, one by one.
+seen() { # OUTCOME: its column
+    grep -v '^#' $work/out | awk -F, -v of="$1" '
+        !at { for (i = 1; i <= NF; i++) if ($i == of) at = i }
+        at { print $at }'
+}
+leaves() { # ARGUMENT...: members may fail, or all end well
+    "$nevh" "$@" >$work/out 2>$work/err
+    test $? -le 1 || fails "$* ends with $?"
+}
+sed '/^\[ensemble\]/,$d' ${srcdir:-.}/scenes/henon-heiles.nevh >$work/escapes.nevh
+cat >>$work/escapes.nevh <<'SCENE'
+[ensemble]
+y   = range(-0.4, 1.3, 21)
+p_x = 0.3
+[run]
+t_end = 41.03
+stop  = x < -1.5
+SCENE
+for scheme in verlet taylor; do
+    for outcomes in state lyapunov 'state,max(x),lyapunov,sali' \
+        'energy_error,mean(x),frequency(x),first(x > 0.2)'; do
+        test "$scheme:$outcomes" != taylor:lyapunov || continue
+        for native in never always; do
+            # Some escape, some stop, and steps of some fail.
+            leaves sweep $work/escapes.nevh --integrators $scheme --dt 0.1 \
+                --outcomes "$outcomes" --native $native
+            grep -v '^#' $work/out >$work/$native.csv
+            for of in x lyapunov; do
+                seen $of >$work/seen
+                test -s $work/seen || continue
+                test -f $work/$scheme.$of || cp $work/seen $work/$scheme.$of
+                cmp -s $work/seen $work/$scheme.$of ||
+                    fails "$scheme: $of differs where $outcomes are asked for"
+            done
+        done
+        cmp -s $work/never.csv $work/always.csv ||
+            fails "$scheme: compiled steps give other $outcomes"
+    done
+done
+
 # Without a compiler one line says so.
 rm -rf $cache
 for what in 'compare pendulum --integrators euler,gauss8 --dt 0.1' \

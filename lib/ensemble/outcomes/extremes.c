@@ -8,15 +8,23 @@ static void begin(const nevh__observation *at, void *record) {
 }
 
 static void step_min(const nevh__observation *at, void *record) {
-    double *least = record;
-    if (isnan(at->value) || at->value < *least)
-        *least = at->value;
+    double least = *(double *)record;
+    for (size_t i = 0; i < at->count; i++) {
+        double value = nevh__observed(at, i);
+        if (isnan(value) || value < least)
+            least = value;
+    }
+    *(double *)record = least;
 }
 
 static void step_max(const nevh__observation *at, void *record) {
-    double *most = record;
-    if (isnan(at->value) || at->value > *most)
-        *most = at->value;
+    double most = *(double *)record;
+    for (size_t i = 0; i < at->count; i++) {
+        double value = nevh__observed(at, i);
+        if (isnan(value) || value > most)
+            most = value;
+    }
+    *(double *)record = most;
 }
 
 static void end(const nevh__observation *at, const void *record,

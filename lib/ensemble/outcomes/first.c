@@ -138,14 +138,23 @@ static bool find_maximum(search *s, double t[3], double g[3], double *at,
     return false;
 }
 
+/* True if the second of three values, the times between which have that ratio, may be
+   beside a maximum above 0. */
+static bool may_graze(const double g[3], double ratio) {
+    double t[3] = {0, 1, 1 + ratio}, at, top;
+    return g[1] >= g[0] && g[1] >= g[2] && g[0] > -INFINITY &&
+           g[2] > -INFINITY && turn(t, g, &at, &top) &&
+           g[1] + doubt * (top - g[1]) > 0;
+}
+
 /* The time at which it first is between the last three states, none of which is
    above 0; NAN where it is not, as far as parabolas tell. */
 static double graze(nevh_ensemble *e, size_t lane, size_t o) {
     size_t i = o * e->stride + lane;
     double g[3] = {e->ago2.value[i], e->ago1.value[i], e->now.value[i]};
-    if (!(g[1] >= g[0] && g[1] >= g[2] && g[0] > -INFINITY && g[2] > -INFINITY))
-        return NAN;
     double ratio = e->ago1.h[lane] / e->ago2.h[lane];
+    if (!may_graze(g, ratio))
+        return NAN;
     double t[3] = {0, 1, 1 + ratio}, at, value;
     search s = {.e = e, .lane = lane, .outcome = o, .ratio = ratio};
     if (!find_maximum(&s, t, g, &at, &value)) {
@@ -166,13 +175,28 @@ static bool known(const void *record) {
 
 static void step(const nevh__observation *at, void *record) {
     nevh_ensemble *e = at->ensemble;
-    if (known(record))
+    if (known(record) || at->count > 1)
         return;
     if (at->value > 0)
         *(double *)record =
             locate(e, &e->ago1, at->lane, at->outcome, 1, at->value);
     else if (at->step > 1)
         *(double *)record = graze(e, at->lane, at->outcome);
+}
+
+/* Until its value is above 0, or may have been between steps. */
+static size_t quiet(const nevh__observation *at, const void *record) {
+    double a = at->value_earlier, b = at->value_before;
+    size_t i = known(record) ? at->count : 0;
+    for (; i < at->count; i++) {
+        double c = nevh__observed(at, i);
+        bool turns = b >= a && b >= c && nevh__observed_step(at, i) > 1;
+        if (c > 0 || (turns && may_graze((const double[]){a, b, c}, 1)))
+            break;
+        a = b;
+        b = c;
+    }
+    return i;
 }
 
 static void end(const nevh__observation *at, const void *record,
@@ -190,6 +214,7 @@ const nevh__outcome_type nevh__outcome_first = {
     .size = sizeof(double),
     .begin = begin,
     .step = step,
+    .quiet = quiet,
     .known = known,
     .end = end,
 };

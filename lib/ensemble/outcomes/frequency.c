@@ -29,7 +29,10 @@ static void clear(void *record) {
 }
 
 static void step(const nevh__observation *at, void *record) {
-    nevh_spectral_samples_take(*(samples *)record, at->step, at->t, at->value);
+    for (size_t i = 0; i < at->count; i++)
+        nevh_spectral_samples_take(
+            *(samples *)record, nevh__observed_step(at, i),
+            nevh__observed_t(at, i), nevh__observed(at, i));
 }
 
 static void begin(const nevh__observation *at, void *record) {

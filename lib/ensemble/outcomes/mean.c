@@ -13,11 +13,18 @@ static void begin(const nevh__observation *at, void *record) {
 }
 
 static void step(const nevh__observation *at, void *record) {
-    integral *x = record;
-    double part = (at->t - at->t_before) / 2 * (at->value_before + at->value);
-    double next = x->sum + part;
-    x->roundoff += nevh__roundoff(next, x->sum, part);
-    x->sum = next;
+    integral x = *(integral *)record;
+    double t = at->t_before, value = at->value_before;
+    for (size_t i = 0; i < at->count; i++) {
+        double t_before = t, before = value;
+        t = nevh__observed_t(at, i);
+        value = nevh__observed(at, i);
+        double part = (t - t_before) / 2 * (before + value);
+        double next = x.sum + part;
+        x.roundoff += nevh__roundoff(next, x.sum, part);
+        x.sum = next;
+    }
+    *(integral *)record = x;
 }
 
 static void end(const nevh__observation *at, const void *record,

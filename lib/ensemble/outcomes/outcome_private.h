@@ -28,15 +28,35 @@
     X(megno, NOTHING)                                                          \
     X(rms, FORMULA)
 
-/* An orbit at its start, after a step, or at its end. */
+/* An orbit at its start, after steps, or at its end. */
 typedef struct {
     nevh_ensemble *ensemble;
     const nevh_outcome *decl;
-    size_t outcome, lane;          /* numbers */
-    size_t step;                   /* 0: the start */
-    double t_start, t, value;      /* value: of the quantity, if there is one */
-    double t_before, value_before; /* a step ago; of no use at the start */
+    size_t outcome, lane;     /* numbers */
+    size_t step;              /* 0: the start */
+    double t_start, t, value; /* value: of the quantity, if there is one */
+    double t_before,
+        value_before;     /* before the steps; of no use at the start */
+    double value_earlier; /* a step before that */
+    size_t count;         /* steps since then, */
+    double h;             /* of that length if there are several */
+    const double *values; /* after each, so far apart */
+    size_t pitch;
 } nevh__observation;
+
+static inline double nevh__observed(const nevh__observation *at, size_t i) {
+    return at->values[i * at->pitch];
+}
+/* The number of one of the steps, and the time after it. */
+static inline size_t nevh__observed_step(const nevh__observation *at,
+                                         size_t i) {
+    return at->step - at->count + 1 + i;
+}
+static inline double nevh__observed_t(const nevh__observation *at, size_t i) {
+    return i + 1 == at->count
+               ? at->t
+               : at->t_start + (double)nevh__observed_step(at, i) * at->h;
+}
 
 /* Functions may be NULL, but for `end` or `of_chaos`.  A record is what is kept of
    an orbit under way; it is 0 until `plan` is called. */
@@ -51,7 +71,9 @@ typedef struct {
     int (*plan)(nevh_ensemble *, size_t outcome, const nevh_options *);
     void (*clear)(void *record);
     void (*begin)(const nevh__observation *, void *record);
-    void (*step)(const nevh__observation *, void *record);
+    void (*step)(const nevh__observation *, void *record); /* or several */
+    /* Counts the first steps that need nothing but the values there; NULL: all. */
+    size_t (*quiet)(const nevh__observation *, const void *record);
     bool (*known)(const void *record); /* it will not change any more */
     void (*end)(const nevh__observation *, const void *record, double result[]);
     double (*of_chaos)(const nevh__chaos_member *);

@@ -33,12 +33,18 @@ static void begin(const nevh__observation *at, void *record) {
 
 static void step(const nevh__observation *at, void *record) {
     integral *x = record;
-    choose_scale(x, fmax(fabs(at->value_before), fabs(at->value)));
-    double a = at->value_before * x->scale, b = at->value * x->scale;
-    double part = (at->t - at->t_before) / 2 * (a * a + b * b);
-    double next = x->sum + part;
-    x->roundoff += nevh__roundoff(next, x->sum, part);
-    x->sum = next;
+    double t = at->t_before, value = at->value_before;
+    for (size_t i = 0; i < at->count; i++) {
+        double t_before = t, before = value;
+        t = nevh__observed_t(at, i);
+        value = nevh__observed(at, i);
+        choose_scale(x, fmax(fabs(before), fabs(value)));
+        double a = before * x->scale, b = value * x->scale;
+        double part = (t - t_before) / 2 * (a * a + b * b);
+        double next = x->sum + part;
+        x->roundoff += nevh__roundoff(next, x->sum, part);
+        x->sum = next;
+    }
 }
 
 static void end(const nevh__observation *at, const void *record,

@@ -43,6 +43,7 @@ size_t nevh_native_steps(const double *restrict N, double *restrict W,
                          double *restrict Q, double *restrict P,
                          double *restrict M, size_t *counted, double *room) {
     (void)counted, (void)room;
+    /* room: where to write what is watched after each step; or NULL */
     nevh__number y[BLOCKS][2 * DOF], lost[BLOCKS][2 * DOF];
     nevh__number kept[BLOCKS][KEPT + 1];
     double *flags = M + (2 * DOF + KEPT) / GROUP * WIDTH;
@@ -76,6 +77,11 @@ size_t nevh_native_steps(const double *restrict N, double *restrict W,
                              kept[b], NULL);
         if (is_bad(bad))
             return done;
+#ifdef NEVH__WATCHES
+        for (int i = 0; room && i < BLOCKS * GROUP; i++)
+            watch(N, &y[i / GROUP][i % GROUP * ONE],
+                  room + done * WATCHED * WIDTH + i * LANES);
+#endif
     }
     for (int b = 0; b < BLOCKS; b++) {
         NEVH__EACH(k, 1, DOF) {
