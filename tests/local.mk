@@ -203,6 +203,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_sheet.sh \
 	tests/tool/nevh_mark.sh \
 	tests/tool/nevh_help.sh \
+	tests/tool/nevh_looks.sh \
 	tests/tool/nevh_commands.sh \
 	tests/tool/nevh_start.sh \
 	tests/build/quickstart.sh \

@@ -45,11 +45,11 @@
     X("gauss8")                                                                \
     X("implicit-euler")                                                        \
     X("forest-ruth")                                                           \
-    X("dopri5")                                                                \
-    X("adaptive-verlet")                                                       \
-    X("taylor")                                                                \
-    X("dop853")                                                                \
     X("heun")                                                                  \
+    X("dop853")                                                                \
+    X("taylor")                                                                \
+    X("adaptive-verlet")                                                       \
+    X("dopri5")                                                                \
     X("tao4")                                                                  \
     X("symplectic-euler-a")                                                    \
     X("pefrl")                                                                 \
