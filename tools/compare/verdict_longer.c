@@ -8,7 +8,7 @@
 /* The end of the run that a row's verdict is from. */
 char *verdict_until(const plan *p, const row *r) {
     double start = p->run->t_start;
-    return text_print("%.4g%s", start + r->followed * (r->t_end - start),
+    return text_print("%.6g%s", start + r->followed * (r->t_end - start),
                       p->unit);
 }
 
@@ -19,7 +19,8 @@ void verdict_later_words(const plan *p, const row rows[], size_t count,
     char *until = verdict_until(p, r);
     list_print(words,
                "%s: the energy error is at most %.1e in the run, but "
-               "exceeds all energies when the run is continued until t = %s.",
+               "grows past every energy the system started with when the run "
+               "is continued until t = %s.",
                subject, r->energy.max, until);
     free(subject);
     free(until);
@@ -166,7 +167,7 @@ void verdict_followed_words(const plan *p, const row rows[], size_t count,
     if (names.count)
         list_print(
             words,
-            "%.4g%s is too short to judge %s: %s from runs to t = %.4g%s "
+            "%.6g%s is too short to judge %s: %s from runs to t = %.6g%s "
             "at most, which the table does not show.",
             span, p->unit, joined,
             names.count == 1 ? "its verdict is" : "their verdicts are",
