@@ -146,8 +146,10 @@ static bool is_whole(FILE *f, medium m) {
 }
 
 int gnuplot_draw(FILE *script, FILE *drawing, medium m) {
-    /* Without the user's own settings. */
-    char *const arguments[] = {"gnuplot", "--default-settings", NULL};
+    /* Without the user's own settings; by name, since gnuplot reads what has none one
+       byte at a time. */
+    char *const arguments[] = {"gnuplot", "--default-settings", "/dev/stdin",
+                               NULL};
     int status = run_heard(arguments, script, drawing);
     if (!status && !is_whole(drawing, m))
         return tool_refuse(
