@@ -82,6 +82,18 @@ texts | grep -qF 'first(phi &gt; 3.5) (s)' || fails "has no label at its scale"
 draws 1 sweep pendulum --vary 'phi = 0, 1, 3' --vary 'p_phi = 0, 8, 9' \
     --dt 0.05 --t-end 1 --outcomes 'max(phi)' --picture
 grep -q "stroke='#999999'" $svg && fails "hatches what has a value"
+# Colours by rank where values crowd: each takes a share of the cells; not where they
+# do not.
+crowd() { # FORMULA
+    draws 1 sweep pendulum --vary 'phi = range(0.01, 1, 20)' --vary 'p_phi = range(0.01, 1, 20)' \
+        --dt 0.1 --t-end 0.1 --outcomes "last($1)" --integrators verlet --picture
+    grep "<path stroke='#" $svg | grep -c "stroke-width='[0-9][0-9]*'" >$work/levels
+}
+crowd '(phi*p_phi)^6'
+texts | grep -q ', by rank$' || fails "ranks no crowded values"
+test "$(cat $work/levels)" -gt 60 || fails "shows $(cat $work/levels) colours of crowded values"
+crowd 'phi + p_phi'
+texts | grep -q 'by rank' && fails "ranks values that do not crowd"
 draws 1 sweep pendulum --vary 'phi = range(-3, 3, 350)' --dt 0.2 --t-end 0.2 \
     --vary 'p_phi = range(-4, 4, 350)' --outcomes 'mean(sin(1e7*phi + 3e6*p_phi))' \
     --integrators verlet --picture

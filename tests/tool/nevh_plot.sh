@@ -105,12 +105,20 @@ test "$(cat $work/out)" = \
     fails "prints something else"
 shows 'verlet, dt = 0.2; gradient central4; t = 0 ... 100; H = 0.125 at the start'
 echo "$(size) $small" | awk '{ exit !($1 > 1.5 * $2) }' || fails "draws points of $(size), not above $small"
-# Orbits of an ensemble have a colour each.
+# The points of one orbit have the colour of its integrator.
+grep -q "linetype 4 pointtype 7" $work/out.gp && fails "has the colour of midpoint"
+draws section $work/single.nevh --integrators midpoint --t-end 100 --plot $svg \
+    --keep-plot-script $work/out.gp
+grep -q "linetype 4 pointtype 7" $work/out.gp || fails "has not the colour of midpoint"
+# Orbits of an ensemble have a look each, and a key.
 draws section henon-heiles --t-end 60 --plot $svg --keep-plot-script $work/out.gp
 shows 'verlet, dt = 0.2; gradient central4; t = 0 ... 60; 16 orbits'
 test "$(grep -c '^\$series' $work/out.gp)" = 16 || fails "has not 16 series"
-test "$(grep '^set linetype' $work/out.gp | sed 's/.*rgb//; s/ linewidth.*//' |
-    sort -u | wc -l)" = 16 || fails "has not 16 colours"
+test "$(sed -n 's/.* with points \(linetype [0-9]* pointtype [0-9]*\) .*/\1/p' $work/out.gp |
+    sort -u | wc -l)" = 16 || fails "has not 16 looks"
+for y in -0.4 0 0.2 0.6; do shows "start y = $y"; done
+draws portrait henon-heiles --integrators verlet,rk4 --t-end 60 --plot $svg
+test "$(texts | grep -c '^start y = ')" = 16 || fails "has other starts in another panel"
 # One degree of freedom: what crosses is 0 at all points, so time is across.
 draws section pendulum --t-end 100 --plot $svg
 for text in swing 't (s)' 'p_phi (J s)'; do shows "$text"; done
@@ -352,9 +360,9 @@ for text in 'bob 1' 'bob 2' 'x (m)' 'y (m)'; do shows "$text"; done
 texts | grep -q 't = 0 ... 5 s; circles: the start; discs: t = 5 s$' ||
     fails "does not say when"
 test "$(points 1)" -gt 2000 || fails "does not draw the reference"
-test "$(points 8)" -gt 2000 || fails "does not draw the trail"
+test "$(points 10)" -gt 2000 || fails "does not draw the trail"
 # Circles about the pivot, chords of which do not show.
-awk '/^\$series[18] <</ { on = 1; n = 0; next } /^EOD/ { on = 0 }
+awk '/^\$series(1|10) <</ { on = 1; n = 0; next } /^EOD/ { on = 0 }
     on { r = $1 * $1 + $2 * $2; bad += r < 0.99999 || r > 1.00001
         d = ($1 - x) ^ 2 + ($2 - y) ^ 2; bad += n++ && d > 0.01; x = $1; y = $2 }
     END { exit bad > 0 }' $work/out.gp || fails "draws chords"
@@ -364,12 +372,19 @@ awk -F, '/^t,/ { for (i = 1; i <= NF; i++) if ($i == "x1") k = i }
     /^[0-9]/ { for (i = 0; i < 4; i++) last[i] = $(k + i) }
     END { printf("%.6f %.6f\n%.6f %.6f\n", last[0], last[1], last[2], last[3]) }
     ' $work/rows.csv >$work/rows
-awk '/^\$series1[56] <</ { getline; printf("%.6f %.6f\n", $1, $2) }' \
+awk '/^\$series1[79] <</ { getline; printf("%.6f %.6f\n", $1, $2) }' \
     $work/out.gp >$work/drawn
 cmp $work/rows $work/drawn || fails "draws bobs elsewhere"
-awk '/^\$series(10|11) <</ { getline; print }' $work/out.gp >$work/drawn
+awk '/^\$series1[23] <</ { getline; print }' $work/out.gp >$work/drawn
 printf '1 -6.12323399573677e-17\n1 -1\n' | cmp - $work/drawn ||
     { fails "draws starts elsewhere"; cat $work/drawn; }
+# Bobs have the colour of the integrator, those of the reference are grey.
+draws run kepler --t-end 5 --plot-kind configuration --integrators gauss4 --plot $svg
+for colour in '#009E73' '#999999'; do
+    test "$(grep -c "stroke='$colour'.*stroke-linecap='round'\|fill='$colour'" $svg)" -ge 2 ||
+        fails "draws no bodies in $colour"
+done
+grep -q '#0072B2' $svg && fails "has a colour that is no integrator's here"
 # Names of bobs, and axes by what places them.
 draws run sun-earth-moon --t-end 1 --plot-kind configuration --plot $svg
 for text in Sun Earth Moon 'x (AU)' 'y (AU)'; do shows "$text"; done

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_MEMBERS = 10000 };
+enum { MOST_MEMBERS = 10000, MOST_NAMED = 16 };
 
 static int read_all(members *m, const plan *p, uint64_t count) {
     for (uint64_t i = 0; i < count; i++) {
@@ -96,4 +96,25 @@ void members_note_energies(const members *m, const plan *p, list *notes) {
             m->low, m->high, p->energy_unit, m->count,
             nevh_scene_coordinate(p->scene, 0), m->high,
             p->p[0] != 0 ? p->p[0] : 1);
+}
+
+static bool differ(const members *m, const double values[], size_t k) {
+    for (size_t i = 1; i < m->count; i++)
+        if (values[i * m->n + k] != values[k])
+            return true;
+    return false;
+}
+
+char *members_start(const members *m, const plan *p, size_t i) {
+    if (m->count < 2 || m->count > MOST_NAMED)
+        return NULL;
+    for (size_t k = 0; k < 2 * m->n; k++) {
+        bool momentum = k >= m->n;
+        const double *values = momentum ? m->p : m->q;
+        if (differ(m, values, k % m->n))
+            return text_print("start %s%s = %.4g", momentum ? "p_" : "",
+                              nevh_scene_coordinate(p->scene, k % m->n),
+                              values[i * m->n + k % m->n]);
+    }
+    return text_print("orbit %zu", m->number[i]);
 }

@@ -20,6 +20,9 @@ void members_free(members *);
 /* Reports members without a start: TOOL_FAILED if there are some. */
 int members_tell(const members *, const plan *);
 void members_note(const members *, list *notes);
+/* "start phi = 0.3": the first coordinate or momentum in which members differ, as a
+   key; to be freed.  NULL where they are one, or too many for a key. */
+char *members_start(const members *, const plan *, size_t i);
 /* Notes that points of a section lie on several surfaces of energy. */
 void members_note_energies(const members *, const plan *, list *notes);
 

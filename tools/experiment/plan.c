@@ -226,11 +226,16 @@ static char *change_of(const char *setting) {
 char *plan_title(const nevh_scene *scene, const char *name, const options *o) {
     const char *own = nevh_scene_title(scene);
     char *title = text_print("%s", *own ? own : name);
+    size_t changes = 0;
     for (size_t i = 0; i < o->settings.count; i++) {
         char *change = change_of(o->settings.item[i]);
-        text_extend(&title, "%s%s", i ? ", " : ", but ", change);
+        text_extend(&title, "%s%s", changes++ ? ", " : ", but ", change);
         free(change);
     }
+    for (size_t i = 0; i < o->vary.count; i++)
+        if (strchr(o->vary.item[i], '='))
+            text_extend(&title, "%s%.*s varied", changes++ ? ", " : ", but ",
+                        (int)strcspn(o->vary.item[i], " =["), o->vary.item[i]);
     return title;
 }
 

@@ -64,8 +64,10 @@ static void choose_span(plot *to, const trace dense[2], size_t k,
         plot_span_x(to, time_of(with, with->kept - last), end);
 }
 
-static void draw_orbit(plot *to, const trace *o, size_t k, const char *name) {
+static void draw_orbit(plot *to, const trace *o, size_t k, const char *name,
+                       plot_form form) {
     size_t series = plot_series(to, name);
+    plot_style(to, series, form);
     for (size_t i = 0; i < o->kept; i++)
         plot_point(to, series, time_of(o, i), value(o, k, i));
 }
@@ -96,8 +98,8 @@ void impact_draw(plot **to, const plan *p, const char *effect,
     }
     if (dense[1].kept > 2)
         choose_span(*to, dense, k, d);
-    draw_orbit(*to, &dense[1], k, "with");
-    draw_orbit(*to, &dense[0], k, "without");
+    draw_orbit(*to, &dense[1], k, "with", PLOT_LINES);
+    draw_orbit(*to, &dense[0], k, "without", PLOT_REFERENCE);
     free(heading);
     free(x);
     free(y);

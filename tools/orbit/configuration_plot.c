@@ -84,29 +84,28 @@ static char *axis_label(const plan *p, const bob_list *b, size_t which) {
 
 /* Parts. */
 
-/* A bob that is alone has the colour of the integrator. */
-static size_t draw_trail(plot *to, const orbit *o, size_t bob, bool alone) {
+/* In the colour of the integrator; the reference is grey. */
+static size_t new_series(plot *to, const orbit *o, plot_form form,
+                         plot_form of_reference) {
     size_t series = plot_series(to, NULL);
-    plot_style(to, series,
-               !o->integrator     ? PLOT_REFERENCE
-               : o->rows.part < 1 ? PLOT_DOTS
-                                  : PLOT_TRAIL);
-    if (alone && o->integrator)
-        plot_integrator(to, series, o->integrator);
-    else if (!alone)
-        plot_set_look(to, series, bob);
+    plot_style(to, series, o->integrator ? form : of_reference);
+    if (o->integrator)
+        plot_set_look(to, series, plot_look_of_integrator(o->integrator));
+    return series;
+}
+
+static void draw_trail(plot *to, const orbit *o, size_t bob) {
+    size_t series = new_series(to, o, o->rows.part < 1 ? PLOT_DOTS : PLOT_TRAIL,
+                               PLOT_REFERENCE);
     for (size_t i = 0; i < o->rows.count; i++) {
         const double *at = orbit_row(o, i) + 2 * bob;
         plot_point(to, series, at[0], at[1]);
     }
-    return series;
 }
 
-static void draw_start(plot *to, const orbit *o, size_t bob, size_t trail) {
+static void draw_start(plot *to, const orbit *o, size_t bob) {
     const double *at = orbit_row(o, 0) + 2 * bob;
-    size_t series = plot_series(to, NULL);
-    plot_style(to, series, PLOT_START);
-    plot_like(to, series, trail);
+    size_t series = new_series(to, o, PLOT_START, PLOT_START);
     plot_point(to, series, at[0], at[1]);
 }
 
@@ -147,33 +146,39 @@ static void draw_rods(plot *to, const bob_list *b, const orbit *o) {
 }
 
 /* Smaller ones later, so that none is hidden. */
-static void draw_bob(plot *to, const bob_list *b, size_t bob, const orbit *o,
-                     size_t trail) {
+static void draw_bob(plot *to, size_t bob, const orbit *o, const double at[2]) {
     static const double least = 0.35, less = 0.2;
-    const char *given = nevh_scene_part_at(b->scene, b->part[bob]).name;
-    char *name = given          ? text_print("%s", given)
-                 : b->count > 1 ? text_print("bob %zu", bob + 1)
-                                : NULL;
-    double values[4];
-    part(b->scene, b->part[bob], o->t, o->q, o->p, values);
-    size_t series = plot_series(to, name);
-    plot_style(to, series, PLOT_BOBS);
+    size_t series = new_series(to, o, PLOT_BOBS, PLOT_GREY_BOBS);
     plot_size(to, series, fmax(1 - less * (double)bob, least));
-    plot_like(to, series, trail);
-    plot_point(to, series, values[0], values[1]);
+    plot_point(to, series, at[0], at[1]);
+}
+
+static void name_bob(plot *to, const bob_list *b, size_t bob,
+                     const double at[2]) {
+    const char *given = nevh_scene_part_at(b->scene, b->part[bob]).name;
+    if (!given && b->count < 2)
+        return;
+    char *name =
+        given ? text_print("%s", given) : text_print("bob %zu", bob + 1);
+    size_t series = plot_series(to, name);
+    plot_style(to, series, PLOT_GUIDE);
+    plot_point(to, series, at[0], at[1]);
     free(name);
 }
 
 static void draw(plot *to, const bob_list *b, const orbit *o) {
-    size_t trails[MOST_BOBS];
+    double values[4];
     for (size_t bob = 0; bob < b->count; bob++)
-        trails[bob] = draw_trail(to, o, bob, b->count == 1);
+        draw_trail(to, o, bob);
     for (size_t bob = 0; bob < b->count && o->rows.count && o->integrator;
          bob++)
-        draw_start(to, o, bob, trails[bob]);
+        draw_start(to, o, bob);
     draw_rods(to, b, o);
-    for (size_t bob = 0; bob < b->count; bob++)
-        draw_bob(to, b, bob, o, trails[bob]);
+    for (size_t bob = 0; bob < b->count; bob++) {
+        part(b->scene, b->part[bob], o->t, o->q, o->p, values);
+        draw_bob(to, bob, o, values);
+        name_bob(to, b, bob, values);
+    }
 }
 
 /* The number of turns of the slowest bob that moves. */
@@ -324,29 +329,21 @@ static char *heading_of(const run_picture *picture, const orbit *o) {
 /* One orbit up to row `last`, or to where it ended. */
 static void draw_moment(plot *to, const bob_list *b, const orbit *o,
                         size_t last) {
-    static const double least = 0.35, less = 0.2;
-    size_t parts = nevh_scene_part_count(b->scene), trails[MOST_BOBS];
+    size_t parts = nevh_scene_part_count(b->scene);
     if (o->rows.count == 0)
         return;
     last = last < o->rows.count ? last : o->rows.count - 1;
     for (size_t bob = 0; bob < b->count; bob++) {
-        trails[bob] = plot_series(to, NULL);
-        plot_style(to, trails[bob], PLOT_TRAIL);
+        size_t trail = new_series(to, o, PLOT_TRAIL, PLOT_REFERENCE);
         for (size_t i = last > TRAIL ? last - TRAIL : 0; i <= last; i++)
-            plot_point(to, trails[bob], orbit_row(o, i)[4 * b->part[bob]],
+            plot_point(to, trail, orbit_row(o, i)[4 * b->part[bob]],
                        orbit_row(o, i)[4 * b->part[bob] + 1]);
     }
     for (size_t i = 0; i < parts; i++)
         if (strcmp(nevh_scene_part_at(b->scene, i).kind, "rod") == 0)
             draw_rod(to, orbit_row(o, last) + 4 * i);
-    for (size_t bob = 0; bob < b->count; bob++) {
-        const double *at = orbit_row(o, last) + 4 * b->part[bob];
-        size_t series = plot_series(to, NULL);
-        plot_style(to, series, PLOT_BOBS);
-        plot_size(to, series, fmax(1 - less * (double)bob, least));
-        plot_like(to, series, trails[bob]);
-        plot_point(to, series, at[0], at[1]);
-    }
+    for (size_t bob = 0; bob < b->count; bob++)
+        draw_bob(to, bob, o, orbit_row(o, last) + 4 * b->part[bob]);
 }
 
 static plot *draw_frame(const run_picture *picture, const bob_list *b,

@@ -1,11 +1,11 @@
-/* nevh flow --plot: the shapes, side by side.
+/* nevh flow --plot: a panel an integrator, with its shapes at all times.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "flow.h"
 #include "plot/plot.h"
 #include <math.h>
 #include <stdlib.h>
 
-enum { MOST_COLUMNS = 6 };
+enum { MOST_SHAPES = 6 };
 
 typedef struct {
     double low_x, high_x, low_y, high_y;
@@ -36,6 +36,33 @@ static double shift_of(const flow_job *j, const nevh_loop *l, size_t time) {
                : 0;
 }
 
+/* The length of the outline over the diagonal of what it covers: of a circle 2.2. */
+static double stretch_of(const flow_job *j, const nevh_loop *l, size_t time) {
+    window w = {INFINITY, -INFINITY, INFINITY, -INFINITY};
+    double *q = tool_allocate(2 * j->plan.n, sizeof *q), *p = q + j->plan.n;
+    for (size_t k = 0; nevh_loop_shape(l, time, k, q, p); k++)
+        widen(&w, q[plane(j)], p[plane(j)]);
+    double x = w.high_x - w.low_x, y = w.high_y - w.low_y, length = 0;
+    double last_x = NAN, last_y = NAN;
+    for (size_t k = 0; nevh_loop_shape(l, time, k, q, p); k++) {
+        double step =
+            hypot((q[plane(j)] - last_x) / x, (p[plane(j)] - last_y) / y);
+        length += isnan(step) ? 0 : step;
+        last_x = q[plane(j)];
+        last_y = p[plane(j)];
+    }
+    free(q);
+    return length / sqrt(2);
+}
+
+/* False where the shape is a thread that would cover the panel. */
+static bool is_drawn(const flow_job *j, const nevh_loop *l, size_t time) {
+    static const double most = 12;
+    nevh_loop_area at = nevh_loop_result(l, time);
+    return time == 0 ||
+           (flow_resolved(at) && !at.inside && stretch_of(j, l, time) <= most);
+}
+
 static bool keeps(const flow_job *j, const flow_row *r) {
     bool transformed;
     return nevh_integrator_symplectic(plan_scheme(&j->plan, r->integrator,
@@ -46,7 +73,7 @@ static bool keeps(const flow_job *j, const flow_row *r) {
 /* The window holds the shapes of symplectic integrators, if there are any; others
    may leave it. Shapes that are much larger than at first are left out. */
 static window find_window(const flow_job *j) {
-    static const double large = 4;
+    static const double large = 4, margin = 0.08;
     window w = {INFINITY, -INFINITY, INFINITY, -INFINITY};
     double *q = tool_allocate(2 * j->plan.n, sizeof *q), *p = q + j->plan.n;
     bool any = false;
@@ -57,16 +84,15 @@ static window find_window(const flow_job *j) {
             for (size_t time = 0; time < j->times; time++) {
                 const nevh_loop *l = j->row[i].loop;
                 nevh_loop_area at = nevh_loop_result(l, time);
-                if (time &&
-                    (isnan(at.area) || !flow_resolved(at) || at.inside ||
-                     fabs(at.area / nevh_loop_result(l, 0).area) > large))
+                if (!is_drawn(j, l, time) ||
+                    fabs(at.area / nevh_loop_result(l, 0).area) > large)
                     continue;
                 double shift = shift_of(j, l, time);
                 for (size_t k = 0; nevh_loop_shape(l, time, k, q, p); k++)
                     widen(&w, q[plane(j)] - shift, p[plane(j)]);
             }
     free(q);
-    double x = 0.04 * (w.high_x - w.low_x), y = 0.04 * (w.high_y - w.low_y);
+    double x = margin * (w.high_x - w.low_x), y = margin * (w.high_y - w.low_y);
     w.low_x -= x;
     w.high_x += x;
     w.low_y -= y;
@@ -74,107 +100,155 @@ static window find_window(const flow_job *j) {
     return w;
 }
 
+static size_t new_series(plot *to, const flow_row *r, plot_form form) {
+    size_t series = plot_series(to, NULL);
+    plot_style(to, series, form);
+    plot_set_look(to, series, plot_look_of_integrator(r->integrator));
+    return series;
+}
+
 /* Draws the outline, interrupted where neighbouring points are far apart. */
 static void draw_outline(plot *to, const flow_job *j, const nevh_loop *l,
-                         size_t time, double shift, plot_form form,
+                         size_t time, size_t series, bool closed,
                          const window *w) {
     static const double far = 0.25; /* of the window */
-    size_t series = plot_series(to, NULL), count = 0;
+    size_t count = 0;
+    double shift = shift_of(j, l, time);
     double *q = tool_allocate(2 * j->plan.n, sizeof *q), *p = q + j->plan.n;
     double last_x = NAN, last_y = NAN;
-    plot_style(to, series, form);
     for (; nevh_loop_shape(l, time, count, q, p); count++) {
         double x = q[plane(j)] - shift, y = p[plane(j)];
-        if (form == PLOT_TRAIL &&
-            (fabs(x - last_x) > far * (w->high_x - w->low_x) ||
-             fabs(y - last_y) > far * (w->high_y - w->low_y)))
+        if (!closed && (fabs(x - last_x) > far * (w->high_x - w->low_x) ||
+                        fabs(y - last_y) > far * (w->high_y - w->low_y)))
             plot_break(to, series);
         plot_point(to, series, x, y);
         last_x = x;
         last_y = y;
     }
-    if (form == PLOT_TRAIL && nevh_loop_shape(l, time, 0, q, p))
+    if (!closed && nevh_loop_shape(l, time, 0, q, p))
         plot_point(to, series, q[plane(j)] - shift, p[plane(j)]);
     free(q);
 }
 
-static bool is_shown(const flow_job *j, const nevh_loop *l, size_t time,
-                     const window *w) {
+/* Names the time at the right end of the shape, where that is in the window;
+   returns whether any of it is. */
+static bool name_time(plot *to, const flow_job *j, const nevh_loop *l,
+                      size_t time, const window *w) {
     double *q = tool_allocate(2 * j->plan.n, sizeof *q), *p = q + j->plan.n;
-    double shift = shift_of(j, l, time);
-    bool shown = false;
-    for (size_t k = 0; !shown && nevh_loop_shape(l, time, k, q, p); k++) {
+    double shift = shift_of(j, l, time), right = -INFINITY, up = 0;
+    for (size_t k = 0; nevh_loop_shape(l, time, k, q, p); k++) {
         double x = q[plane(j)] - shift, y = p[plane(j)];
-        shown =
-            x >= w->low_x && x <= w->high_x && y >= w->low_y && y <= w->high_y;
+        if (x > right && x >= w->low_x && x <= w->high_x && y >= w->low_y &&
+            y <= w->high_y) {
+            right = x;
+            up = y;
+        }
     }
     free(q);
-    return shown;
+    if (!isfinite(right))
+        return false;
+    char *name =
+        text_print("t = %.4g%s", nevh_loop_result(l, time).t, j->plan.unit);
+    size_t series = plot_series(to, name);
+    plot_style(to, series, PLOT_GUIDE);
+    plot_point(to, series, right, up);
+    free(name);
+    return true;
 }
 
-static char *heading_of(const flow_job *j, const flow_row *r, size_t time,
-                        bool named, const window *w) {
-    nevh_loop_area at = nevh_loop_result(r->loop, time);
-    double ratio = at.area / nevh_loop_result(r->loop, 0).area;
-    char *area = isnan(at.area) ? text_print("failed")
-                 : !flow_resolved(at) && !at.inside
-                     ? text_print("area unresolved")
-                 : fabs(ratio - 1) < 5e-7 ? text_print("area 1")
-                                          : text_print("area %.4g", ratio);
-    const char *where =
-        isnan(at.area) || is_shown(j, r->loop, time, w) ? "" : ", outside";
-    char *text =
-        named ? text_print("%s, t = %.4g%s", r->integrator, at.t, j->plan.unit)
-              : text_print("t = %.4g%s, %s%s", at.t, j->plan.unit, area, where);
+static void draw_shape(plot *to, const flow_job *j, const flow_row *r,
+                       size_t time, const window *w) {
+    bool filled = j->plan.n == 1;
+    draw_outline(to, j, r->loop, time,
+                 new_series(to, r, filled ? PLOT_FILLED : PLOT_TRAIL), filled,
+                 w);
+    for (int i = 0; i < FLOW_EYES; i++)
+        if (r->eye[i])
+            draw_outline(to, j, r->eye[i], time, new_series(to, r, PLOT_HOLE),
+                         true, w);
+}
+
+/* The change of the area by the scheme, as far as that is known. */
+static char *area_words(const flow_job *j, const flow_row *r) {
+    static const double nothing = 5e-7;
+    double first = nevh_loop_result(r->loop, 0).area, worst = 0;
+    nevh_loop_area last = {.area = NAN};
+    for (size_t i = 1; i < j->times; i++) {
+        nevh_loop_area at = nevh_loop_result(r->loop, i);
+        if (isnan(at.area) || !flow_resolved(at))
+            continue;
+        last = at;
+        worst = fmax(worst, fabs(at.area / first - 1));
+    }
+    return isnan(last.area) ? text_print("area unresolved")
+           : worst < nothing
+               ? text_print("area kept until t = %.4g%s", last.t, j->plan.unit)
+               : text_print("area \303\227 %.4g until t = %.4g%s",
+                            last.area / first, last.t, j->plan.unit);
+}
+
+static char *heading_of(const flow_job *j, const flow_row *r, bool outside) {
+    char *area = area_words(j, r), *dt = NULL;
+    if (j->rows > 1 && j->row[0].dt != j->row[j->rows - 1].dt)
+        dt = text_print(", dt = %.4g%s", r->dt, j->plan.unit);
+    char *text = text_print(
+        "%s%s: %s%s", r->integrator, dt ? dt : "",
+        isnan(nevh_loop_result(r->loop, j->times - 1).area) ? "failed" : area,
+        outside ? ", outside" : "");
     free(area);
+    free(dt);
     return text;
 }
 
-static void draw_panel(plot **to, const flow_job *j, const flow_row *r,
-                       size_t time, bool named, const window *w) {
+static void begin_panel(plot **to, const flow_job *j, const window *w) {
     const char *name = nevh_scene_coordinate(j->plan.scene, plane(j));
     char *momentum = text_print("p_%s", name);
     char *x = plot_label(&j->plan, name, name);
     char *y = plot_label(&j->plan, momentum, momentum);
-    char *heading = heading_of(j, r, time, named, w);
-    nevh_loop_area at = nevh_loop_result(r->loop, time);
-    if (*to) {
-        plot_panel(*to, heading, x, y);
-    } else {
+    if (*to)
+        plot_panel(*to, NULL, x, y);
+    else
         *to = plot_new(j->plan.title, x, y);
-        plot_heading(*to, heading);
-    }
     plot_span_x(*to, w->low_x, w->high_x);
     plot_span_y(*to, w->low_y, w->high_y);
-    double shift = shift_of(j, r->loop, time);
-    draw_outline(*to, j, r->loop, time, shift,
-                 flow_resolved(at) && !at.inside && j->plan.n == 1 ? PLOT_FILLED
-                                                                   : PLOT_TRAIL,
-                 w);
-    for (int i = 0; i < FLOW_EYES; i++)
-        if (r->eye[i] && flow_resolved(at) && !at.inside)
-            draw_outline(*to, j, r->eye[i], time, shift, PLOT_HOLE, w);
     free(momentum);
     free(x);
     free(y);
+}
+
+/* Later shapes are longer: they are behind.
+   returns  how many are left out */
+static size_t draw_panel(plot **to, const flow_job *j, const flow_row *r,
+                         const window *w) {
+    size_t every = (j->times + MOST_SHAPES - 1) / MOST_SHAPES, left_out = 0;
+    bool outside = false;
+    begin_panel(to, j, w);
+    for (size_t k = (j->times - 1) / every + 1; k-- > 0;)
+        if (is_drawn(j, r->loop, k * every)) {
+            draw_shape(*to, j, r, k * every, w);
+            outside |= !name_time(*to, j, r->loop, k * every, w);
+        } else
+            left_out++;
+    char *heading = heading_of(j, r, outside);
+    plot_heading(*to, heading);
     free(heading);
+    return left_out;
 }
 
 int flow_plot(const flow_job *j, const options *o) {
     plot *to = NULL;
     window w = find_window(j);
-    size_t every = (j->times + MOST_COLUMNS - 1) / MOST_COLUMNS, columns = 0;
+    size_t left_out = 0;
     for (size_t i = 0; i < j->rows; i++) {
         if (isnan(nevh_loop_result(j->row[i].loop, 0).area))
             continue; /* refused */
-        columns = 0;
-        for (size_t time = 0; time < j->times; time += every, columns++)
-            draw_panel(&to, j, &j->row[i], time, columns == 0, &w);
+        left_out += draw_panel(&to, j, &j->row[i], &w);
     }
     if (!to)
         return tool_refuse("nothing to plot: no integrator fits");
-    plot_columns(to, columns);
-    char *more = text_print("%s; area 1: that at the start", j->shape.text);
+    char *more = text_print(
+        "%s at the times named; area over the first%s", j->shape.text,
+        left_out ? "; shapes that are long threads are not drawn" : "");
     plot_note_run(to, &j->plan, NULL, more);
     free(more);
     int drawn = plot_write(to, o);

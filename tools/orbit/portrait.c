@@ -7,12 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    USUAL_STEPS = 2000,
-    MOST_POINTS = 4000,
-    MOST_LEVELS = 16,
-    MOST_NAMED = 13
-};
+enum { USUAL_STEPS = 2000, MOST_POINTS = 4000, MOST_LEVELS = 16 };
 
 /* The orbits of all members by one integrator. */
 typedef struct {
@@ -152,36 +147,17 @@ static size_t choose_levels(const portrait_job *j, double energy[MOST_LEVELS]) {
     return chosen;
 }
 
-static bool is_same(const double values[], size_t count) {
-    for (size_t i = 1; i < count; i++)
-        if (values[i] != values[0])
-            return false;
-    return true;
-}
-
-/* The key to a start; NULL where it needs none, or there are too many. */
-static char *name_of(const portrait_job *j, size_t member) {
-    const members *m = &j->members;
-    const char *q = nevh_scene_coordinate(j->plan.scene, 0);
-    if (m->count < 2 || m->count > MOST_NAMED)
-        return NULL;
-    return is_same(m->p, m->count)
-               ? text_print("start %s = %.4g", q, m->q[member])
-           : is_same(m->q, m->count)
-               ? text_print("start p_%s = %.4g", q, m->p[member])
-               : text_print("start %.4g, %.4g", m->q[member], m->p[member]);
-}
-
 static size_t orbit_series(const portrait_job *j, const orbits_of *o,
                            size_t member, plot *to) {
-    char *name = name_of(j, member);
+    char *name = members_start(&j->members, &j->plan, member);
     size_t series = plot_series(to, name);
-    plot_style(to, series, PLOT_DOTS);
-    plot_size(to, series, 0.6);
     if (j->members.count > 1)
-        plot_set_look(to, series, member);
-    else
+        plot_member(to, series, member);
+    else {
+        plot_style(to, series, PLOT_DOTS);
         plot_integrator(to, series, o->integrator);
+    }
+    plot_size(to, series, 0.6);
     free(name);
     return series;
 }
@@ -399,8 +375,9 @@ static int draw(portrait_job *j, const options *o) {
                      ? text_print("dt = %.4g%s; %zu orbit%s, grey: levels of H",
                                   j->plan.dt[0], j->plan.unit, j->members.count,
                                   j->members.count == 1 ? "" : "s")
-                     : text_print("dt = %.4g%s; %zu orbits", j->plan.dt[0],
-                                  j->plan.unit, j->members.count);
+                     : text_print("dt = %.4g%s; %zu orbit%s", j->plan.dt[0],
+                                  j->plan.unit, j->members.count,
+                                  j->members.count == 1 ? "" : "s");
     plot_note_run(to, &j->plan, NULL, more);
     free(more);
     int drawn = plot_write(to, o);

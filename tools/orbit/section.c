@@ -26,12 +26,13 @@ typedef struct {
     series *all;
     size_t count;
     const char *integrator;
-    members members;
-    double after;   /* earlier points are left out */
-    size_t at;      /* the member that is run */
-    size_t failed;  /* members */
-    double stopped; /* where the scene's `stop` said; NAN */
-    char *ended;    /* how, where that was not at t_end; or NULL */
+    members members; /* where they are: at the ends of their runs, too */
+    list starts;     /* the key to them; may be none */
+    double after;    /* earlier points are left out */
+    size_t at;       /* the member that is run */
+    size_t failed;   /* members */
+    double stopped;  /* where the scene's `stop` said; NAN */
+    char *ended;     /* how, where that was not at t_end; or NULL */
 } section_job;
 
 /* Into (-period/2, period/2], where rounding makes no other of half a period. */
@@ -154,6 +155,7 @@ static void forget(section_job *j) {
         free(j->all[i].members);
     }
     members_free(&j->members);
+    list_free(&j->starts);
     free(j->all);
     free(j->ended);
 }
@@ -229,8 +231,18 @@ static int run_member(section_job *j, nevh_stepper *s) {
     return status;
 }
 
+static void name_starts(section_job *j) {
+    for (size_t i = 0; i < j->members.count; i++) {
+        char *name = members_start(&j->members, j->plan, i);
+        if (name)
+            list_add(&j->starts, name);
+        free(name);
+    }
+}
+
 static int run(section_job *j, nevh_stepper *s) {
     int worst = members_tell(&j->members, j->plan);
+    name_starts(j);
     for (j->at = 0; j->at < j->members.count; j->at++)
         if (run_member(j, s))
             worst = TOOL_FAILED;
@@ -363,14 +375,19 @@ static void add_note(const section_job *j, plot *to) {
     free(more);
 }
 
+static void draw_series(const section_job *j, const series *s, plot **to,
+                        const char *heading) {
+    section_plot(to, j->plan, s->decl, s->points, s->numbers,
+                 j->members.count > 1 ? s->members : NULL,
+                 j->starts.count ? &j->starts : NULL, heading, j->integrator);
+}
+
 static int draw(const section_job *j, const options *o, int status) {
     plot *to = NULL;
     if (count_points(j) == 0)
         return status ? status : refuse_empty(j);
     for (size_t i = 0; i < j->count; i++)
-        section_plot(&to, j->plan, j->all[i].decl, j->all[i].points,
-                     j->all[i].numbers,
-                     j->members.several ? j->all[i].members : NULL, NULL);
+        draw_series(j, &j->all[i], &to, NULL);
     add_note(j, to);
     int drawn = plot_write(to, o);
     plot_free(to);
@@ -431,8 +448,7 @@ int section_panel(plot **to, const plan *p, const options *o,
     if (fits && !status)
         status = run(&j, s);
     if (j.count && j.all[0].points && status != TOOL_USAGE)
-        section_plot(to, p, j.all[0].decl, j.all[0].points, j.all[0].numbers,
-                     j.all[0].members, integrator);
+        draw_series(&j, &j.all[0], to, integrator);
     nevh_stepper_free(s);
     forget(&j);
     return status;

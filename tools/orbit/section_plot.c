@@ -56,9 +56,11 @@ static bool is_level(const column *c) {
     return c->points > 1 && high - low <= nothing * fmax(size, 1e-6);
 }
 
-static size_t new_series(plot *to, const char *name) {
+static size_t new_series(plot *to, const char *name, plot_form form,
+                         const char *integrator) {
     size_t series = plot_series(to, name);
-    plot_style(to, series, PLOT_DOTS);
+    plot_style(to, series, form);
+    plot_set_look(to, series, plot_look_of_integrator(integrator));
     return series;
 }
 
@@ -80,12 +82,14 @@ static void add_panel(plot **to, const plan *p, const nevh_scene_section *decl,
 
 /* A series an orbit. */
 static void draw_members(plot *to, const column *x, const column *y,
-                         const size_t members[]) {
+                         const size_t member[], const list *names) {
     size_t series = 0;
-    plot_many_colours(to);
     for (size_t k = 0; k < x->points; k++) {
-        for (size_t i = k ? members[k - 1] + 1 : 0; i <= members[k]; i++)
-            plot_size(to, series = new_series(to, NULL), 0.6);
+        for (size_t i = k ? member[k - 1] + 1 : 0; i <= member[k]; i++) {
+            series = plot_series(to, names ? names->item[i] : NULL);
+            plot_member(to, series, i);
+            plot_size(to, series, 0.6);
+        }
         plot_point(to, series, value(x, k), value(y, k));
     }
 }
@@ -93,9 +97,10 @@ static void draw_members(plot *to, const column *x, const column *y,
 /* The first item and the second; a single one, or one beside another that does
    not change, against the time. */
 void section_plot(plot **to, const plan *p, const nevh_scene_section *decl,
-                  size_t points, const double numbers[], const size_t members[],
-                  const char *heading) {
-    bool two_ways = decl->direction == 0 && decl->every == 0 && !members;
+                  size_t points, const double numbers[], const size_t member[],
+                  const list *names, const char *heading,
+                  const char *integrator) {
+    bool two_ways = decl->direction == 0 && decl->every == 0 && !member;
     size_t width = 2 + decl->items, last = decl->items > 1 ? 1 : 0;
     column t = column_of(p, "t", points, numbers, width, 0);
     column first = column_of(p, decl->item[0], points, numbers, width, 2);
@@ -104,12 +109,14 @@ void section_plot(plot **to, const plan *p, const nevh_scene_section *decl,
     column x = level ? t : first;
     add_panel(to, p, decl, points, level ? "t" : decl->item[0],
               decl->item[last], heading);
-    if (members) {
-        draw_members(*to, &x, &y, members);
+    if (member) {
+        draw_members(*to, &x, &y, member, names);
         return;
     }
-    size_t rising = new_series(*to, two_ways ? "rising" : NULL);
-    size_t falling = two_ways ? new_series(*to, "falling") : rising;
+    size_t rising =
+        new_series(*to, two_ways ? "rising" : NULL, PLOT_DOTS, integrator);
+    size_t falling =
+        two_ways ? new_series(*to, "falling", PLOT_RINGS, integrator) : rising;
     for (size_t k = 0; k < points; k++)
         plot_point(*to, numbers[k * width + 1] < 0 ? falling : rising,
                    value(&x, k), value(&y, k));

@@ -43,13 +43,13 @@ void plot_note(plot *p, const char *text) {
     p->note = copy(text);
 }
 
-void plot_heading(plot *p, const char *text) {
-    free(p->panel->heading);
-    p->panel->heading = copy(text);
-}
-
 static panel *current(const plot *p) {
     return &p->panel[p->panels - 1];
+}
+
+void plot_heading(plot *p, const char *text) {
+    free(current(p)->heading);
+    current(p)->heading = copy(text);
 }
 
 void plot_log(plot *p, bool x, bool y) {
@@ -84,8 +84,7 @@ void plot_map(plot *p, size_t columns, const double x[], size_t rows,
                          copy_of(y, rows),
                          copy_of(z, columns * rows),
                          copy(label),
-                         false,
-                         {0, 0}};
+                         .log = false};
     for (size_t i = 0; i < columns * rows; i++)
         if (isfinite(z[i])) {
             r.low = fmin(r.low, z[i]);
@@ -96,10 +95,11 @@ void plot_map(plot *p, size_t columns, const double x[], size_t rows,
         r = (range){r.low - fmax(fabs(r.low), 1) / 2,
                     r.high + fmax(fabs(r.high), 1) / 2};
     p->map.shown = r;
-}
-
-void plot_many_colours(plot *p) {
-    p->colourful = true;
+    plot_map_rank(&p->map);
+    if (p->map.ranked) {
+        free(p->map.label);
+        p->map.label = text_print("%s, by rank", label ? label : "");
+    }
 }
 
 void plot_then(plot *p, plot *next) {
@@ -185,6 +185,12 @@ void plot_integrator(plot *p, size_t number, const char *name) {
         }
     }
     own->look = look;
+}
+
+void plot_member(plot *p, size_t number, size_t member) {
+    enum { COLOURS = 8 };
+    plot_set_look(p, number, member % COLOURS);
+    plot_style(p, number, member / COLOURS % 2 ? PLOT_RINGS : PLOT_DOTS);
 }
 
 static void add(series *s, pair point) {

@@ -19,8 +19,10 @@ typedef enum {
     PLOT_BOTH,       /* lines with a marker at each point */
     PLOT_POINTS,     /* markers */
     PLOT_DOTS,       /* the smaller the more they are */
+    PLOT_RINGS,      /* such, but hollow */
     PLOT_RODS,       /* thick grey lines */
     PLOT_BOBS,       /* large discs */
+    PLOT_GREY_BOBS,  /* such, grey */
     PLOT_START,      /* small circles */
     PLOT_LEVEL,      /* thin pale lines */
     PLOT_SEPARATRIX, /* a dark line */
@@ -40,7 +42,7 @@ void plot_free(plot *); /* NULL is allowed */
 void plot_note(plot *, const char *text);
 /* Adds a panel and makes it the current one. */
 void plot_panel(plot *, const char *heading, const char *x, const char *y);
-/* The heading of the first panel. */
+/* The heading of the current panel. */
 void plot_heading(plot *, const char *text);
 
 /* Settings of the current panel. */
@@ -53,8 +55,8 @@ void plot_least_y(plot *, double factor); /* of a logarithmic axis: no less */
 /* All panels show the same ranges. */
 void plot_same_ranges(plot *);
 /* The first panel is a map: values z[row*columns + column] at x[column], y[row],
-   in colours that are lighter the larger they are, so that
-   they read in grey; hatched where they are NAN.  All are copied. */
+   in colours that are lighter the larger they are, so that they read in grey, by
+   rank where most are close together; hatched where they are NAN.  All are copied. */
 void plot_map(plot *, size_t columns, const double x[], size_t rows,
               const double y[], const double z[], const char *label);
 /* The look of an integrator, the same in all pictures, and its colour. */
@@ -64,8 +66,9 @@ const char *plot_colour_of(size_t look);
    the picture, such as with another step, has the same colour. */
 void plot_set_look(plot *, size_t series, size_t look);
 void plot_integrator(plot *, size_t series, const char *name);
-/* Looks differ in colour alone, of which there are as many as looks. */
-void plot_many_colours(plot *);
+/* The series has the points of one orbit of many: 16 of them differ in colour, or in
+   that dots are rings. */
+void plot_member(plot *, size_t series, size_t member);
 /* So many panels side by side, small ones where they are many. */
 void plot_columns(plot *, size_t columns);
 /* Panels are wide, one below the other, over one axis. */
@@ -101,12 +104,15 @@ char *plot_energy_at_start(const plan *);
 
 /* section_plot.c: a panel, the first making the plot.
       numbers  of each point t, direction, and the items of the section
-   members  of each point, rising: which orbit it is of, a colour each; NULL: all
-            of one
-   heading  NULL: the section's name */
+   member   of each point, rising: which of the orbits it is of, a look each; NULL:
+            all of one
+   names    the key to the orbits; NULL: none
+   heading  NULL: the section's name
+   integrator  which made the points */
 void section_plot(plot **, const plan *, const nevh_scene_section *,
-                  size_t points, const double numbers[], const size_t members[],
-                  const char *heading);
+                  size_t points, const double numbers[], const size_t member[],
+                  const list *names, const char *heading,
+                  const char *integrator);
 
 bool plot_wanted(const options *); /* --plot or --keep-plot-script */
 /* Checks what plot_write needs: a known ending, files that can be written, gnuplot

@@ -38,8 +38,13 @@ static const struct {
     [PLOT_BOTH] = {.width = 1.5, .dash = OF_LOOK, .mark = OWN},
     [PLOT_POINTS] = {.mark = OWN},
     [PLOT_DOTS] = {.mark = PLOT_DISC},
+    [PLOT_RINGS] = {.mark = PLOT_CIRCLE},
     [PLOT_RODS] = {.colour = "#777777", .width = 4},
     [PLOT_BOBS] = {.mark = PLOT_DISC, .size = 2.2, .edge = "#000000"},
+    [PLOT_GREY_BOBS] = {.colour = "#999999",
+                        .mark = PLOT_DISC,
+                        .size = 2.2,
+                        .edge = "#000000"},
     [PLOT_START] = {.mark = PLOT_CIRCLE, .size = 1.2},
     [PLOT_LEVEL] = {.colour = "#bbbbbb", .width = 0.7},
     [PLOT_SEPARATRIX] = {.colour = "#000000", .width = 1.3},
@@ -57,26 +62,8 @@ const char *plot_colour_of(size_t look) {
     return colours[look % COLOURS];
 }
 
-/* Neighbours are far apart on the circle of hues, and differ in lightness. */
-void plot_colour(const plot *p, size_t look, char text[16]) {
-    static const double golden = 0.6180339887498949;
-    if (!p->colourful) {
-        snprintf(text, 16, "%s", plot_colour_of(look));
-        return;
-    }
-    double light = 0.45 + 0.15 * (double)(look % 3);
-    unsigned part[3];
-    for (int i = 0; i < 3; i++) {
-        double hue = fmod((double)look * golden + i / 3.0, 1);
-        double wave = 0.5 + 0.5 * cos(2 * 3.141592653589793 * hue);
-        part[i] = (unsigned)(255 * fmin(light * (0.25 + 1.25 * wave), 1));
-    }
-    snprintf(text, 16, "#%02X%02X%02X", part[0] & 255, part[1] & 255,
-             part[2] & 255);
-}
-
-const double *plot_look_dash(const plot *p, size_t look) {
-    return dashes[p->colourful ? 0 : look % DASHES];
+const double *plot_look_dash(size_t look) {
+    return dashes[look % DASHES];
 }
 
 int plot_look_mark(size_t look) {
@@ -89,6 +76,15 @@ static double dot_size(size_t count) {
                 smallest);
 }
 
+/* A dash tells lines apart: of one alone it would but hide parts. */
+static bool is_alone(const plot *p, const series *s) {
+    for (size_t i = 0; i < p->count; i++)
+        if (p->series[i].panel == s->panel && p->series[i].look != s->look &&
+            forms[p->series[i].form].dash == OF_LOOK)
+            return false;
+    return true;
+}
+
 plot_look plot_look_of(const plot *p, const series *s) {
     plot_look l = {.own = !forms[s->form].colour,
                    .width = forms[s->form].width,
@@ -98,23 +94,22 @@ plot_look plot_look_of(const plot *p, const series *s) {
                    .edge = forms[s->form].edge,
                    .every = 1};
     double size = forms[s->form].size;
-    if (l.own)
-        plot_colour(p, s->look, l.colour);
-    else
-        strcpy(l.colour, forms[s->form].colour);
-    if (forms[s->form].dash == OF_LOOK)
-        l.dash = plot_look_dash(p, s->look);
+    snprintf(l.colour, sizeof l.colour, "%s",
+             l.own ? plot_colour_of(s->look) : forms[s->form].colour);
+    if (forms[s->form].dash == OF_LOOK && !is_alone(p, s))
+        l.dash = plot_look_dash(s->look);
     else if (forms[s->form].dash == AS_ASKED)
         l.dash = dashes[s->dash % DASHES];
     if (l.mark == OWN)
         l.mark = plot_look_mark(s->look);
     l.size = PLOT_USUAL_SIZE;
-    if (s->form == PLOT_DOTS)
+    if (s->form == PLOT_DOTS || s->form == PLOT_RINGS)
         l.size = dot_size(s->count) * s->size;
     else if (size > 0)
         l.size = size * s->size;
     if (s->form == PLOT_MARKED)
         l.every = s->count / MARKS + 1 + s->look;
-    l.many = s->form == PLOT_DOTS || s->form == PLOT_POINTS;
+    l.many =
+        s->form == PLOT_DOTS || s->form == PLOT_RINGS || s->form == PLOT_POINTS;
     return l;
 }

@@ -18,13 +18,29 @@ static bool is_crossed_by(const guide_name *one, pair a, pair b) {
                      (pair){one->right, one->middle + half});
 }
 
-/* True if a curve of the panel, or another guide, crosses the name. */
+/* True if the disc of a body, or another large mark, is under the name. */
+static bool is_marked(const guide_name *one, double radius, pair at) {
+    return radius > 0 && at.x + radius > one->left &&
+           at.x - radius < one->right &&
+           fabs(at.y - one->middle) < radius + 0.6 * PLOT_NOTE_FONT;
+}
+
+static double mark_radius(const plot *p, const series *s) {
+    plot_look look = plot_look_of(p, s);
+    return look.mark && look.size >= 0.7 && s->count < 3 ? 5.25 * look.size : 0;
+}
+
+/* True if a curve of the panel, another guide, or a mark crosses the name. */
 static bool is_crossed(const plot *p, const series *guide,
                        const plot_screen *on, const guide_name *one) {
     for (size_t i = 0; i < p->count; i++) {
         const series *s = &p->series[i];
         if (s == guide || s->panel != guide->panel)
             continue;
+        double radius = mark_radius(p, s);
+        for (size_t k = 0; k < s->count && radius > 0; k++)
+            if (is_marked(one, radius, plot_in_pixels(on, s->point[k])))
+                return true;
         for (size_t k = 1; k < s->count; k++)
             if (is_crossed_by(one, plot_in_pixels(on, s->point[k - 1]),
                               plot_in_pixels(on, s->point[k])))
@@ -33,29 +49,46 @@ static bool is_crossed(const plot *p, const series *guide,
     return false;
 }
 
-/* Beside the guide, from its end on, so that it is within the picture and over no
-   other, nor, if need be, over a curve; false where it has no place. */
+enum { PLACES = 10, SIDES = 10 };
+
+/* The place number n of a name of that width: beside the guide, from its end on, on
+   one side and the other, then farther away; of a point in its line, then in lines
+   below and above. */
+static guide_name place_at(const series *s, const plot_screen *on, double width,
+                           size_t n) {
+    enum { NEAR = 4 };
+    static const double sides[SIDES] = {4,   -4, 14,  -14, 24,
+                                        -24, 34, -34, 44,  -44};
+    bool is_point = s->count < 2;
+    double side = sides[is_point ? n % NEAR : n / PLACES];
+    size_t k = is_point ? n / NEAR : n % PLACES;
+    double share = (double)k / PLACES;
+    double lines = (k % 2 ? -1.0 : 1.0) * (double)((k + 1) / 2);
+    pair first = plot_in_pixels(on, s->point[0]);
+    pair last = plot_in_pixels(on, s->point[s->count - 1]);
+    double x =
+        last.x + share * (first.x - last.x) + side - (side < 0 ? width : 0);
+    double y = last.y + share * (first.y - last.y) +
+               (is_point ? 1.2 * PLOT_NOTE_FONT * lines : 0);
+    return (guide_name){x, x + width, y, s->name};
+}
+
+/* The first place within the picture and over no other name, nor, if need be, over a
+   curve; false where there is none. */
 static bool place_beside(const plot *p, const series *s, const plot_screen *on,
                          double right, bool apart, const guide_name *others,
                          size_t count, guide_name *to) {
-    enum { PLACES = 10, AWAY = 4 };
-    static const double sides[] = {4, -4, 14, -14, 24, -24, 34, -34, 44, -44};
-    enum { SIDES = sizeof sides / sizeof *sides };
-    pair first = plot_in_pixels(on, s->point[0]);
-    pair last = plot_in_pixels(on, s->point[s->count - 1]);
+    enum { AWAY = 4 };
     double width = 0.6 * PLOT_NOTE_FONT * (double)plot_letters(s->name);
-    for (size_t i = 0; i < (apart ? SIDES : 1); i++)
-        for (int k = 0; k < PLACES; k++) {
-            double share = (double)k / PLACES;
-            double x = last.x + share * (first.x - last.x) + sides[i] -
-                       (sides[i] < 0 ? width : 0);
-            double y = last.y + share * (first.y - last.y);
-            *to = (guide_name){x, x + width, y, s->name};
-            bool within = x > AWAY && y > AWAY && y < on->height - AWAY;
-            if (to->right < right && !is_covered(others, count, to) &&
-                (!apart || (within && !is_crossed(p, s, on, to))))
-                return true;
-        }
+    size_t places = apart ? PLACES * SIDES : PLACES;
+    for (size_t n = 0; n < places; n++) {
+        *to = place_at(s, on, width, n);
+        bool within = to->left > AWAY && to->middle > AWAY &&
+                      to->middle < on->height - AWAY;
+        if (to->right < right && !is_covered(others, count, to) &&
+            (!apart || (within && !is_crossed(p, s, on, to))))
+            return true;
+    }
     return false;
 }
 

@@ -115,7 +115,7 @@ static void choose_panels(layout *l, const plot *p, const target *t) {
     }
     if (p->beside && !p->stacked) {
         l->columns = p->beside < p->panels ? p->beside : p->panels;
-        l->panel_width = fmax(fmin(1200 / (double)l->columns, 400), 200);
+        l->panel_width = fmax(fmin(960 / (double)l->columns, 400), 200);
         l->panel_height = 0.8 * l->panel_width;
         if (p->panel->equal)
             shape_panel(l, p, l->panel_width);

@@ -37,19 +37,10 @@ typedef struct {
     char *label;
     bool log; /* values span decades */
     range shown;
+    /* True where values crowd: z are ranks from 0 to 1, of these at the quarters. */
+    bool ranked;
+    double quarter[5];
 } field_map;
-
-/* plot_map.c */
-/* Cividis [J. R. Nunez, C. R. Anderton, R. S. Renslow, PLoS ONE 13 (2018)
-   e0199239]: its lightness grows evenly, also for those who see few colours. */
-enum { PLOT_PALETTE = 6 };
-extern const unsigned plot_palette[PLOT_PALETTE];
-/* The cell of value i ends half way to its neighbours. */
-range plot_map_cell(size_t count, const double x[], size_t i);
-/* The data block $map of gnuplot, and how it is drawn: as pixels, where values
-   are equal steps apart, else as cells. */
-void plot_map_values(const field_map *, FILE *);
-void plot_map_style(const field_map *, FILE *);
 
 struct plot {
     char *title, *note;
@@ -58,10 +49,9 @@ struct plot {
     size_t panels, count; /* count: of series */
     bool same_ranges, stacked;
     field_map map;
-    bool colourful; /* see plot_many_colours */
-    size_t beside;  /* panels side by side; 0: chosen */
-    size_t hidden;  /* points that no logarithmic axis shows */
-    plot *next;     /* see plot_then; NULL: none */
+    size_t beside; /* panels side by side; 0: chosen */
+    size_t hidden; /* points that no logarithmic axis shows */
+    plot *next;    /* see plot_then; NULL: none */
 };
 
 /* plot_range.c: what an axis of a panel shows: the points, with some room, or
@@ -94,6 +84,24 @@ axis plot_axis_across(range, bool log, double letters, bool text);
 size_t plot_axis_letters(const axis *); /* of the longest number */
 /* With power and base; NULL: no label.  To be freed. */
 char *plot_axis_label(const axis *, const char *label, bool text);
+
+/* plot_map.c */
+/* Cividis [J. R. Nunez, C. R. Anderton, R. S. Renslow, PLoS ONE 13 (2018)
+   e0199239]: its lightness grows evenly, also for those who see few colours. */
+enum { PLOT_PALETTE = 6 };
+extern const unsigned plot_palette[PLOT_PALETTE];
+/* The cell of value i ends half way to its neighbours. */
+range plot_map_cell(size_t count, const double x[], size_t i);
+/* The place of a value between the ends of the scale, as a share. */
+double plot_map_share(const field_map *, double z);
+/* Replaces values by ranks where most are in a small part of the scale. */
+void plot_map_rank(field_map *);
+/* The numbers beside the colours. */
+axis plot_map_axis(const field_map *, double count, bool text);
+/* The data block $map of gnuplot, and how it is drawn: as pixels, where values
+   are equal steps apart, else as cells. */
+void plot_map_values(const field_map *, FILE *);
+void plot_map_style(const field_map *, FILE *);
 
 /* plot_script.c: the whole in the language of gnuplot. */
 typedef enum {
@@ -211,8 +219,7 @@ typedef struct {
     bool many;        /* marks over others need not be drawn */
 } plot_look;
 plot_look plot_look_of(const plot *, const series *);
-void plot_colour(const plot *, size_t look, char text[16]);
-const double *plot_look_dash(const plot *, size_t look);
+const double *plot_look_dash(size_t look);
 int plot_look_mark(size_t look);
 
 /* plot_guides.c: names at the ends of the guides of a panel, in its pixels.

@@ -23,9 +23,10 @@ static void print_terminal(FILE *f, const target *t, const layout *l) {
         break;
     case PLOT_GIF: /* so many hundredths of a second each frame */
         fprintf(f,
-                "set terminal gif animate delay 6 loop 0 size %g,%g enhanced "
-                "font 'sans,%d' fontscale 0.75 background '#ffffff'\n",
-                w, h, PLOT_FONT);
+                "set terminal gif animate optimize delay 6 loop 0 size %g,%g "
+                "enhanced "
+                "font 'sans,%d' fontscale 0.6 background '#ffffff'\n",
+                floor(0.7 * w), floor(0.7 * h), PLOT_FONT);
         break;
     case PLOT_PDF:
         fprintf(f,
@@ -55,6 +56,20 @@ static void print_output(FILE *f, const char *file) {
     fputs("\"\n", f);
 }
 
+static void print_axis(FILE *f, const char *letters, const axis *a,
+                       bool numbers) {
+    fprintf(f, "%s logscale %s\nset %srange [%.12g:%.12g]\n",
+            a->log ? "set" : "unset", letters, letters, a->shown.low,
+            a->shown.high);
+    fprintf(f, a->count ? "set %stics nomirror out (" : "unset %stics\n",
+            letters);
+    for (size_t i = 0; i < a->count; i++)
+        fprintf(f, "%s\"%s\" %.12g%s", i ? ", " : "",
+                numbers ? a->tick[i].text : "", a->tick[i].at,
+                a->tick[i].minor ? " 1" : "");
+    fputs(a->count ? ")\n" : "", f);
+}
+
 static void print_map(FILE *f, const field_map *m, const layout *l) {
     for (size_t i = 0; i < PLOT_PALETTE; i++)
         fprintf(f, "%s%zu '#%06X'", i ? ", " : "set palette defined (", i,
@@ -63,29 +78,18 @@ static void print_map(FILE *f, const field_map *m, const layout *l) {
         ")\nset object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor "
         "rgb '#999999' fillstyle pattern 4 noborder\n",
         f);
-    fprintf(f, "set cbrange [%.12g:%.12g]\n%s", m->shown.low, m->shown.high,
-            m->log ? "set logscale cb\nset format cb '10^{%T}'\n" : "");
-    plot_quote_line(f, "set cblabel ", m->label, l->panel_height / l->letter,
+    axis a = plot_map_axis(m, l->panel_height / (2 * l->line), l->letter == 1);
+    char *label = plot_axis_label(&a, m->label, l->letter == 1);
+    print_axis(f, "cb", &a, true);
+    plot_quote_line(f, "set cblabel ", label, l->panel_height / l->letter,
                     " offset 0.5,0");
+    free(label);
     double left = (l->left + l->panel_width + 2 * l->letter) / l->width;
     double top = 1 - (l->title + l->top) / l->height;
     fprintf(f, "set colorbox user origin %.6f,%.6f size %.6f,%.6f\n", left,
             top - l->panel_height / l->height, 2 * l->letter / l->width,
             l->panel_height / l->height);
     plot_map_values(m, f);
-}
-
-static void print_axis(FILE *f, char letter, const axis *a, bool numbers) {
-    fprintf(f, "%s logscale %c\nset %crange [%.12g:%.12g]\n",
-            a->log ? "set" : "unset", letter, letter, a->shown.low,
-            a->shown.high);
-    fprintf(f, a->count ? "set %ctics nomirror out (" : "unset %ctics\n",
-            letter);
-    for (size_t i = 0; i < a->count; i++)
-        fprintf(f, "%s\"%s\" %.12g%s", i ? ", " : "",
-                numbers ? a->tick[i].text : "", a->tick[i].at,
-                a->tick[i].minor ? " 1" : "");
-    fputs(a->count ? ")\n" : "", f);
 }
 
 static void print_label(FILE *f, const char *before, const char *label,
@@ -125,8 +129,8 @@ static void print_axes(FILE *f, const plot *p, size_t number, const layout *l,
     axes a = plot_axes(p, number, l, text);
     panel on = p->panel[number];
     bool above = p->stacked && number + 1 < p->panels;
-    print_axis(f, 'x', &a.x, text || !above);
-    print_axis(f, 'y', &a.y, true);
+    print_axis(f, "x", &a.x, text || !above);
+    print_axis(f, "y", &a.y, true);
     if (above)
         on.x = NULL;
     print_texts(f, &on, &a, l, text);
@@ -164,11 +168,12 @@ static void print_key(FILE *f, const layout *l, bool text) {
             text ? 3 : 2);
 }
 
-static void print_frame(FILE *f, const plot *p, const layout *l, bool text) {
+/* Neither letters nor frames of an animation have a grid. */
+static void print_frame(FILE *f, const plot *p, const layout *l, bool grid) {
     fputs("set encoding utf8\nset border 3 linecolor rgb '#555555'\n"
           "set tics textcolor rgb '#000000'\n",
           f);
-    if (!text)
+    if (grid)
         fputs("set grid linetype 1 linecolor rgb '#dddddd' linewidth 0.5 "
               "dashtype solid, linetype 1 linecolor rgb '#dddddd' linewidth "
               "0.5 dashtype solid\n",
@@ -192,10 +197,11 @@ static void print_legend(FILE *f, const plot *p, const layout *l, bool text) {
     plot_script_series(f, p, p->panels, true, text);
 }
 
-static void print_picture(FILE *f, const plot *p, const layout *l, bool text) {
+static void print_picture(FILE *f, const plot *p, const layout *l, bool text,
+                          bool grid) {
     bool apart = l->legend + l->legend_height > 0 && l->legend_apart;
     bool several = p->panels > 1 || apart;
-    print_frame(f, p, l, text);
+    print_frame(f, p, l, grid);
     plot_script_looks(f, p);
     plot_script_data(f, p);
     if (p->map.columns)
@@ -228,7 +234,7 @@ void plot_script(const plot *p, const target *t, FILE *f) {
         print_output(f, t->file);
     bool text = t->medium == PLOT_TEXT;
     for (; p; p = p->next) {
-        print_picture(f, p, &l, text);
+        print_picture(f, p, &l, text, !text && t->medium != PLOT_GIF);
         if (p->next)
             fputs("unset label\n", f);
     }

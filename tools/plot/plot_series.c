@@ -29,15 +29,13 @@ static void print_dash(FILE *f, const double dash[]) {
 
 void plot_script_looks(FILE *f, const plot *p) {
     size_t looks = 0;
-    char colour[16];
     for (size_t i = 0; i < p->count; i++)
         if (p->series[i].look >= looks)
             looks = p->series[i].look + 1;
     for (size_t k = 0; k < looks; k++) {
-        plot_colour(p, k, colour);
         fprintf(f, "set linetype %zu linecolor rgb '%s' linewidth 1.5", k + 1,
-                colour);
-        print_dash(f, plot_look_dash(p, k));
+                plot_colour_of(k));
+        print_dash(f, plot_look_dash(k));
         fprintf(f, " pointtype %d pointsize %g\n", plot_look_mark(k),
                 PLOT_USUAL_SIZE);
     }

@@ -223,7 +223,7 @@ static void put_scale(FILE *f, const field_map *m, const layout *l) {
     pair at = plot_panel_at(0, l);
     double left = at.x + l->panel_width + 2 * l->letter;
     double right = left + 2 * l->letter, height = l->panel_height;
-    axis a = plot_axis(m->shown, m->log, height / (2 * l->line), false);
+    axis a = plot_map_axis(m, height / (2 * l->line), false);
     char *label = plot_axis_label(&a, m->label, false);
     plot_svg_palette(f, left, at.y, height);
     put_axis(

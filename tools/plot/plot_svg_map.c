@@ -59,12 +59,9 @@ static void bands_free(bands *b) {
 }
 
 static unsigned char level_of(const field_map *m, double z) {
-    range r = m->shown;
-    double share = m->log ? log(z / r.low) / log(r.high / r.low)
-                          : (z - r.low) / (r.high - r.low);
-    return isfinite(z)
-               ? (unsigned char)limited(floor(share * LEVELS), LEVELS - 1)
-               : NO_LEVEL;
+    return isfinite(z) ? (unsigned char)limited(
+                             floor(plot_map_share(m, z) * LEVELS), LEVELS - 1)
+                       : NO_LEVEL;
 }
 
 static unsigned char *levels_new(const field_map *m, const bands *columns,

@@ -30,11 +30,17 @@ static double error_of(const study *l, size_t k) {
     return study_error(&l->level[k]);
 }
 
+/* The time where that is shown; what schemes evaluate else. */
+static double price(const drawing *d, const row *r) {
+    return d->work == milliseconds ? milliseconds(r) : r->work;
+}
+
 /* True if a shorter step costs no more and errs less: steps may be so long that
-   solving their equations takes more work than they save. */
-static bool is_outdone(const study *l, size_t k) {
+   solving their equations takes more work than they save, and times are measured. */
+static bool is_outdone(const drawing *d, const study *l, size_t k) {
     for (size_t i = k + 1; i < l->count; i++)
-        if (l->level[i].work <= l->level[k].work &&
+        if (d->work(&l->level[i]) > 0 &&
+            price(d, &l->level[i]) <= price(d, &l->level[k]) &&
             error_of(l, i) <= error_of(l, k))
             return true;
     return false;
@@ -43,7 +49,7 @@ static bool is_outdone(const study *l, size_t k) {
 /* Without a break where there was no time to measure it. */
 static bool is_drawn(const drawing *d, const study *l, size_t k) {
     return isfinite(error_of(l, k)) && d->work(&l->level[k]) > 0 &&
-           !is_outdone(l, k);
+           !is_outdone(d, l, k);
 }
 
 static void draw_study(drawing *d, const study *l) {
@@ -57,7 +63,7 @@ static void draw_study(drawing *d, const study *l) {
         if (is_drawn(d, l, k))
             plot_point(d->to, series, d->work(&l->level[k]), error_of(l, k));
         else
-            d->left_out += isfinite(error_of(l, k)) && is_outdone(l, k);
+            d->left_out += isfinite(error_of(l, k)) && is_outdone(d, l, k);
     free(name);
 }
 
@@ -128,8 +134,7 @@ static void add_note(const drawing *d) {
         d->costs->search.plan.by_state
             ? "errors relative to the range of each variable"
             : "errors relative to the scale of the energy",
-        d->left_out ? "; long steps that cost no less than shorter ones are "
-                      "left out"
+        d->left_out ? "; steps that cost no less than shorter ones are left out"
                     : "");
     plot_note_run(d->to, &d->costs->search.plan, NULL, text);
     free(text);
@@ -148,7 +153,6 @@ int cost_plot(const options *o, const costs *c) {
                h || all_have(c, slopes) ? NULL : "only schemes that take it",
                h ? "evaluations of H" : "evaluations of the gradient", error);
     d.work = h ? values : slopes;
-    d.left_out = 0;
     draw_panel(&d);
     draw_guides(&d);
     add_note(&d);
