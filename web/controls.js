@@ -85,8 +85,18 @@ function showEffects() {
       numbers.push(element("label", {}, e.name, value));
     }
   }
-  at("effects").replaceChildren(...fields);
+  at("effects").replaceChildren(...fields, ...another());
   at("parameters").replaceChildren(...numbers);
+}
+// Fields for one more effect.
+function another() {
+  const field = (id, label, hint) => {
+    const made = element("input", { type: "text", id, placeholder: hint, spellcheck: false });
+    made.setAttribute("aria-label", label);
+    return made;
+  };
+  return [element("span", {}, "+"), field("new-name", "name of another effect", "name"),
+    field("new-formula", "formula of another effect", "another term of H")];
 }
 // The mark of a scheme, in its colour.
 function letterOf(name) {
@@ -158,7 +168,20 @@ function rewritten() {
       lines.push(known[1] + " = " + wanted.get(known[1]));
     else lines.push(line);
   }
+  const formula = at("new-formula").value.trim();
+  if (formula) {
+    const name = at("new-name").value.trim() || nameless();
+    let to = lines.findIndex((line) => /^\s*\[effects\]/.test(line)) + 1;
+    while (to < lines.length && /^\s*[^\s[]/.test(lines[to])) to++;
+    lines.splice(to, 0, name + " = " + formula);
+  }
   return lines.join("\n");
+}
+// A name that no effect has.
+function nameless() {
+  let count = 1;
+  while (before("own" + count) !== undefined) count++;
+  return "own" + count;
 }
 const before = (name) => scene.equations.find((e) => e.section === "effects" &&
   e.name === name)?.value;

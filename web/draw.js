@@ -324,7 +324,7 @@ function drawDisc(pen, i, c) {
     phase.mark(wrapped(rows[i][4 + S.plane * w + j], c),
       rows[i][4 + (n + S.plane) * w + j], 0, 1.4);
 }
-let told = -Infinity, written = -Infinity;
+let told = -Infinity, written = -Infinity, listed = -Infinity;
 function draw() {
   drawConfiguration();
   drawErrors();
@@ -335,6 +335,8 @@ function draw() {
 // ---- text ----
 const digits = (v, count = 6) => Number.isFinite(v) ? v.toPrecision(count) : "";
 function report(atOnce) {
+  if (!atOnce && now() - listed < 100) return; // texts that nobody reads cost a layout
+  listed = now();
   const body = at("states").tBodies[0];
   const lines = S.schemes.length + S.exact;
   while (body.rows.length > lines) body.deleteRow(-1);

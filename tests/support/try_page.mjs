@@ -132,6 +132,20 @@ await tried("pendulum", "", async (page) => {
   await page.evaluate(`(() => { at("missing").querySelector("input").value = "0.5";
     at("missing").requestSubmit(); })()`);
   check(await page.until("/kk = 0.5/.test(S.text) && at('missing').hidden"), "no parameter kk");
+  // An effect that is typed can be switched off; what is wrong with it is named.
+  const add = (name, formula) => page.evaluate(`(() => { at("new-name").value = "${name}";
+    at("new-formula").value = "${formula}"; at("formulas").requestSubmit(); })()`);
+  await add("stiff", "phi^");
+  check(await page.until("/phi\\^/.test(at('wrong').textContent)"), "takes phi^ as an effect");
+  await add("stiff", "stiffness*phi^4");
+  check(await page.until("/stiffness/.test(at('missing').textContent)"), "asks for no stiffness");
+  await page.evaluate(`(() => { at("missing").querySelector("input").value = "0.2";
+    at("missing").requestSubmit(); })()`);
+  check(await page.until("scene.equations.some((e) => e.name === 'stiff' && e.on)"),
+    "does not add the effect");
+  await page.evaluate(`document.querySelector("[aria-label='effect stiff is on']").click()`);
+  check(await page.until("scene.equations.some((e) => e.name === 'stiff' && !e.on)"),
+    "does not switch the effect off");
   check(await page.until("/own formulas/.test(document.title)"), "the title stays");
   await page.evaluate(`(() => { at("dt-number").value = "0.0125";
     at("dt-number").onchange(); at("wall").click(); })()`);
@@ -158,7 +172,10 @@ await tried("pendulum", "integrators=verlet,rk4,euler&disc=1&dt=0.0625", async (
   const states = async (chunk) => {
     await page.evaluate("setPlaying(false)");
     await page.evaluate(`(async () => { await race();
-      for (let left = 240; left > 0;) left -= await go(Math.min(left, ${chunk})); })()`);
+      for (let left = 240, done; left > 0; left -= done) {
+        done = await go(Math.min(left, ${chunk}));
+        if (!done) throw new Error("takes no steps: " + at("message").textContent);
+      } })()`);
     return page.evaluate("JSON.stringify(rows.map((row) => Array.from(row)))");
   };
   const one = await states(1), many = await states(240);
