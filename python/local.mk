@@ -25,6 +25,8 @@ python_package = \
 	python/nevh/_hgrad.py \
 	python/nevh/_library.py \
 	python/nevh/_looks.py \
+	python/nevh/_members.py \
+	python/nevh/_names.py \
 	python/nevh/_own.py \
 	python/nevh/_plot.py \
 	python/nevh/_progress.py \
@@ -36,6 +38,7 @@ python_package = \
 	python/nevh/_sweep.py \
 	python/nevh/_symbol.py \
 	python/nevh/_symbol_arrays.py \
+	python/nevh/_symbol_functions.py \
 	python/nevh/_table.py \
 	python/nevh/_tasks.py \
 	python/nevh/_trace.py \

@@ -5,7 +5,9 @@
    composition of steps of a splitting is a splitting, and that of a Runge-Kutta
    method is one with as many stages more.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "kernels/splitting_private.h"
 #include "kernels/tableau_private.h"
+#include "kernels/tao_private.h"
 #include "kernels/scheme_table_private.h"
 #include "system/print_private.h"
 #include "system/system_private.h"
@@ -345,6 +347,70 @@ static bool compose_runge_kutta(own_scheme *x, const nevh_scheme_table *t,
     return make_of_coefficients(x, s, NULL, facts, e);
 }
 
+/* Step i of a composition of Tao's steps, of which `half` are given and the others
+   mirror them. */
+static long double part_of(const nevh_splitting *c, size_t i) {
+    size_t parts = 2 * c->count + 1;
+    long double middle = 1;
+    for (size_t k = 0; k < c->count; k++)
+        middle -= 2 * c->weights[k];
+    return i == c->count ? middle
+                         : c->weights[i < c->count ? i : parts - 1 - i];
+}
+
+/* The weights of all steps, in turn; whether they are as many and mirror each other
+   as a table has them. */
+static bool take_parts(own_scheme *x, const nevh_scheme_table *t,
+                       nevh_table_error *e) {
+    const nevh_splitting *base = t->base->table;
+    size_t each = 2 * base->count + 1, parts = each * t->steps;
+    long double all[2 * NEVH__TAO_MOST_WEIGHTS + 1];
+    if (parts > 2 * NEVH__TAO_MOST_WEIGHTS + 1)
+        return fail(e, 's', SIZE_MAX,
+                    "%zu steps of tao2, where %d are possible", parts,
+                    2 * NEVH__TAO_MOST_WEIGHTS + 1);
+    for (size_t i = 0; i < parts; i++)
+        all[i] = t->step[i / each] * part_of(base, i % each);
+    for (size_t i = 0; i < parts; i++)
+        if (parts % 2 == 0 || !(fabsl(all[i] - all[parts - 1 - i]) <=
+                                NEVH__DIGITS * (1 + fabsl(all[i]))))
+            return fail(e, 's', SIZE_MAX,
+                        "steps of %s are composed of an odd number of weights, "
+                        "which are the same from back to front",
+                        t->base->name);
+    x->wide = nevh__array(parts, sizeof *x->wide);
+    if (!x->wide)
+        return no_memory(e);
+    memcpy(x->wide, all, parts / 2 * sizeof *all);
+    x->splitting = (nevh_splitting){NEVH_KICK, NEVH_COMPOSITION, parts / 2,
+                                    parts > 1 ? x->wide : NULL};
+    return true;
+}
+
+/* The conditions are those of Verlet's steps of the same parts. */
+static bool compose_tao(own_scheme *x, const nevh_scheme_table *t,
+                        nevh_scheme_facts *facts, nevh_table_error *e) {
+    if (!take_parts(x, t, e))
+        return false;
+    size_t count = nevh__splitting_operations(&x->splitting);
+    long double *weights = nevh__array(count, sizeof *weights);
+    nevh__operations all = {NEVH_KICK, count, weights};
+    if (!weights)
+        return no_memory(e);
+    nevh__splitting_expand_wide(&x->splitting, weights);
+    int status = nevh__splitting_facts(&all, facts);
+    free(weights);
+    if (status)
+        return no_memory(e);
+    facts->order = facts->any_kinetic;
+    x->scheme.stages = (int)(2 * x->splitting.count + 1);
+    x->scheme.gradients = 3 * x->scheme.stages;
+    x->scheme.explicit_form = NEVH_YES;
+    x->scheme.kernel = &nevh__tao_kernel;
+    x->scheme.table = &x->splitting;
+    return true;
+}
+
 static bool make_composition(own_scheme *x, const nevh_scheme_table *t,
                              nevh_scheme_facts *facts, nevh_table_error *e) {
     nevh__numbers base;
@@ -353,6 +419,8 @@ static bool make_composition(own_scheme *x, const nevh_scheme_table *t,
     for (size_t i = 0; i < t->steps; i++)
         if (t->step[i] == 0)
             return fail(e, 's', i, "a step of length 0");
+    if (t->base->kernel == &nevh__tao_kernel)
+        return compose_tao(x, t, facts, e);
     int status = nevh__numbers_of(t->base, &base);
     bool made = status == NEVH_EINVAL
                     ? fail(e, 0, SIZE_MAX,
@@ -385,8 +453,10 @@ static bool make(own_scheme *x, const nevh_scheme_table *t,
                 : t->stages ? make_runge_kutta(x, t, &facts, e)
                             : make_splitting(x, t, &facts, e);
     x->scheme.order = facts.order;
-    x->scheme.symplectic = facts.symplectic ? NEVH_YES : NEVH_NO;
-    x->scheme.symmetric = facts.symmetric ? NEVH_YES : NEVH_NO;
+    nevh_claim holds =
+        x->scheme.kernel == &nevh__tao_kernel ? NEVH_EXTENDED : NEVH_YES;
+    x->scheme.symplectic = facts.symplectic ? holds : NEVH_NO;
+    x->scheme.symmetric = facts.symmetric ? holds : NEVH_NO;
     x->scheme.preserves_energy = NEVH_NO;
     return made;
 }

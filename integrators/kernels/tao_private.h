@@ -10,7 +10,7 @@
    a time; its `first` does not matter. */
 double nevh__composition_part(const nevh_splitting *, size_t i, double h);
 
-enum { NEVH__TAO_MOST_WEIGHTS = 4 }; /* of a table */
+enum { NEVH__TAO_MOST_WEIGHTS = 17 }; /* of a table */
 
 /* The binding of the two copies. */
 typedef struct {

@@ -182,6 +182,8 @@ def hard(case: str | None = None, integrators: str | Sequence[str] | None = None
 def integrators() -> List[str]: ...
 def library() -> str: ...
 def list(what: str, *, all: bool | None = None, options: Sequence[str] = ()) -> Table: ...
+def mark(file: str, *, name: str | PathLike[str] | None = None, key: str | Sequence[str] |
+        None = None, options: Sequence[str] = ()) -> Table: ...
 def new(file: str, *, with_effects: str | Sequence[str] | None = None, without_effects:
         str | Sequence[str] | None = None, parameters: Mapping[str, Any] | None = None,
         from_scene: str | PathLike[str] | None = None, allow_code: bool | None = None,
@@ -264,6 +266,10 @@ def section(scene: Any, integrators: str | Sequence[str] | None = None, dt: floa
         PathLike[str] | None = None, section: str | Sequence[str] | None = None, after:
         float | str | None = None, allow_code: bool | None = None, coordinates:
         Sequence[str] | None = None, options: Sequence[str] = ()) -> Table: ...
+def sheet(number: int | str | None = None, *, name: str | PathLike[str] | None = None,
+        key: str | Sequence[str] | None = None, answers: bool | None = None, form:
+        Literal["page", "notebook", "check", "moodle", "form"] | None = None, output: str
+        | PathLike[str] | None = None, options: Sequence[str] = ()) -> Table: ...
 def solve(H: Any, t_span: Sequence[float] | None = None, y0: Sequence[float] |
         Mapping[str, float | str] | None = None, method: str | type | None = None, *, dt:
         float | None = None, rtol: float | None = None, atol: float | Sequence[float] |

@@ -107,13 +107,18 @@ def numbers_of(given, known):
 
 
 def list_of_sheets(room):
-    """A line a sheet."""
+    """The sheets, a row each."""
+    return [["sheet", "title", "answers"]] + [
+        [sheet.number, text.markdown(sheet.title), len(room.asked(sheet.number))]
+        for sheet in read_sheets(room.path)]
+
+
+def list_in_words(rows):
+    """A line a sheet, and how to begin."""
     lines = ["Worksheets for a class, two hours each:", ""]
-    for sheet in read_sheets(room.path):
-        count = len(room.asked(sheet.number))
-        lines.append("  %d  %-28s %s" % (sheet.number, text.markdown(sheet.title),
-                                         "%d answers are numbers" % count if count > 1 else
-                                         "1 answer is a number"))
+    for number, title, count in rows[1:]:
+        lines.append("  %d  %-28s %s" % (number, title, "%d answers are numbers" % count
+                                         if count > 1 else "1 answer is a number"))
     return "\n".join(lines + [
         "", "To begin:",
         "  nevh sheet 1                     sheet-1.html, to print, and sheet-1.ipynb",
@@ -166,8 +171,8 @@ def form(room, names, chosen):
 
 
 def make_sheets(room, given, names, chosen):
-    """Pages and notebooks in a folder; what was written."""
-    folder, count, stems = given.output or ".", 0, file_names(names)
+    """Pages and notebooks in a folder; their names."""
+    folder, files, stems = given.output or ".", [], file_names(names)
     if not os.path.isdir(folder):
         os.mkdir(folder)
     for name in told(names):
@@ -177,18 +182,17 @@ def make_sheets(room, given, names, chosen):
             stem = os.path.join(folder, "-".join(
                 ["sheet", str(sheet.number)] + ([stems[name]] if name else [])))
             if given.form in (None, "page"):
-                write(stem + ".html", text.page("Sheet %d" % sheet.number, page_of(
+                files.append(stem + ".html")
+                write(files[-1], text.page("Sheet %d" % sheet.number, page_of(
                     room, sheet, name), sheet.source))
-                count += 1
             if given.form in (None, "notebook"):
-                write_notebook(sheet, stem + ".ipynb", [
+                files.append(stem + ".ipynb")
+                write_notebook(sheet, files[-1], [
                     (task.item, task.asks()) for task in room.asked(sheet.number)])
-                count += 1
             if given.form == "check":
-                write(stem + "-check.html", export.check_page(
-                    room, sheet, name or "", given.key))
-                count += 1
-    return "%d files are made in %s\n" % (count, folder)
+                files.append(stem + "-check.html")
+                write(files[-1], export.check_page(room, sheet, name or "", given.key))
+    return folder, files
 
 
 def answer_rows(room, given, names, chosen):
@@ -218,6 +222,15 @@ def as_csv(rows):
     made = io.StringIO()
     csv.writer(made, lineterminator="\n").writerows(rows)
     return made.getvalue()
+
+
+def as_json(rows, words=()):
+    """A table as other commands have it; numbers are numbers."""
+    def cell(name, x):
+        return float(x) if name in ("answer", "lowest", "highest") and not words else x
+    return json.dumps({"rows": [
+        {name: cell(name, x) for name, x in zip(rows[0], row)} for row in rows[1:]],
+        "notes": [], "verdict": list(words)}, ensure_ascii=False) + "\n"
 
 
 def as_table(rows):
@@ -260,13 +273,16 @@ def sums(right):
 
 def run(given):
     """What a command prints."""
-    room = Room()
+    room, is_json = Room(), given.format == "json" and not is_file(given)
     if given.what == "mark":
         rows, right = mark_rows(room, given)
+        if is_json:
+            return as_json(rows, sums(right).splitlines())
         return as_csv(rows) if given.format == "csv" else as_table(rows) + "\n" + sums(right)
     if given.number is given.name is given.form is given.output is None and \
             not given.answers:
-        return list_of_sheets(room)
+        rows = list_of_sheets(room)
+        return as_json(rows) if is_json else list_in_words(rows)
     if given.name is not None and not given.key and given.form != "form":
         raise Error("--for needs --key too, a word of yours: the numbers are drawn from it and "
                     "from the name")
@@ -274,14 +290,16 @@ def run(given):
     chosen = numbers_of(given.number, sorted(room.quantities))
     if given.answers:
         rows = answer_rows(room, given, names, chosen)
-        return as_csv(rows) if given.format == "csv" or given.output else as_table(rows)
-    if given.form == "moodle":
-        return export.moodle(room, chosen, names, given.key)
-    if given.form == "form":
-        return form(room, names, chosen)
-    if is_one_page(given):
-        return one_page(room, names, chosen, given.key)
-    return make_sheets(room, given, names, chosen)
+        return as_json(rows) if is_json else as_csv(rows) if given.format == "csv" or \
+            given.output else as_table(rows)
+    if given.form in ("moodle", "form") or is_one_page(given):
+        made = export.moodle(room, chosen, names, given.key) if given.form == "moodle" else \
+            form(room, names, chosen) if given.form == "form" else \
+            one_page(room, names, chosen, given.key)
+        return as_json([["text"], [made]]) if is_json else made
+    folder, files = make_sheets(room, given, names, chosen)
+    return as_json([["file"], *([file] for file in files)]) if is_json else \
+        "%d files are made in %s\n" % (len(files), folder)
 
 
 def is_one_page(given):
@@ -311,6 +329,8 @@ def main(arguments):
         made = run(given)
         if is_file(given):
             write(given.output, made)
+            if given.format == "json":
+                sys.stdout.write(as_json([["file"], [given.output]]))
         else:
             sys.stdout.write(made)
     except OSError as error:

@@ -28,13 +28,12 @@ from ._table import Table, Text
 
 # Options that have other names here, or none.
 _names_here = {"with": "with_effects", "without": "without_effects", "set": "parameters",
-               "start": "y0", "from": "from_scene"}
+               "start": "y0", "from": "from_scene", "for": "name", "as": "form"}
 _no_options = ("format", "quiet", "help", "version")
 _files_of_tables = ("output", "resume")  # a Table has to_csv
 _of_scenes = ("with", "without", "set", "start")
 _in_order = ("integrators", "dt", "t-end")
-# sweep fills arrays by the library itself; sheets are made by this package.
-_not_functions = ("sweep", "help", "sheet", "mark")
+_not_functions = ("sweep", "help")  # sweep fills arrays by the library itself
 
 
 def command() -> str:
@@ -56,7 +55,8 @@ def _run(arguments):
     """What the command prints, and its exit status; the interrupt key ends it first."""
     process = subprocess.Popen([command()] + arguments, stdin=subprocess.DEVNULL,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                               encoding="utf-8", errors="replace")
+                               encoding="utf-8", errors="replace",
+                               env=dict({"PYTHON": sys.executable}, **os.environ))
     try:
         with Progress(arguments[0]) as progress:
             out, said = _heard(process, progress)
@@ -104,7 +104,10 @@ def _signature(of):
     """How the function of a command is called."""
     kind = inspect.Parameter
     parameters, operand = [], of["operand"]
-    if operand:
+    if operand == "N":
+        parameters.append(kind("number", kind.POSITIONAL_OR_KEYWORD, default=None,
+                               annotation="int | str | None"))
+    elif operand:
         parameters.append(kind(operand.split(".")[0].lower(), kind.POSITIONAL_OR_KEYWORD,
                                annotation={"SCENE": "Any", "SCENE...": "Any"}.get(
                                    operand, "str")))
@@ -112,7 +115,8 @@ def _signature(of):
         parameters.append(kind("case", kind.POSITIONAL_OR_KEYWORD, default=None,
                                annotation="str | None"))
     options = [name for name in of["options"] if name not in _no_options and
-               not (name in _files_of_tables and "format" in of["options"])]
+               not (name in _files_of_tables and "format" in of["options"] and
+                    of["name"] != "sheet")]  # whose output is a folder
     parameters += [kind(_here(name), kind.POSITIONAL_OR_KEYWORD if name in _in_order else
                         kind.KEYWORD_ONLY, default=None,
                         annotation=_types_of(_list()[1][name]) + " | None")
@@ -160,7 +164,7 @@ def _documentation(of, signature):
     """The docstring of a command's function: that of its help."""
     import textwrap
     listed = _list()[1]
-    lines = [of["help"][0].upper() + of["help"][1:] + ".", ""]
+    lines = textwrap.wrap(_message(of["help"][0].upper() + of["help"][1:] + "."), 86) + [""]
     for name in of["options"]:
         if _here(name) not in signature.parameters:
             continue
@@ -334,7 +338,9 @@ def _words(of, given, folder):
             for name in _of_scenes:
                 given.pop(_here(name), None)
     else:
-        name = operand.lower() if operand else "case"
+        name = {"N": "number", None: "case"}.get(operand) or operand.lower()
+        if isinstance(given.get(name), int) and operand == "N":
+            given[name] = str(given[name])
         if name in given:
             operands = [_text(name, os.fspath(given[name]) if isinstance(
                 given[name], os.PathLike) else given[name])]
@@ -439,7 +445,12 @@ def _function(name):
 
 def gradients(scene: Any = None, *arguments: Any, **named: Any) -> Any:
     """The names of all gradients; of a scene the table of `nevh gradients`: errors and
-    costs along its orbit, with the options of the command."""
+    costs along its orbit, with the options of the command.
+
+    >>> made = nevh.gradients("pendulum", t_end=10)
+    >>> len(made) > 0
+    True
+    """
     if scene is None:
         return gradient_names()
     return _function("gradients")(scene, *arguments, **named)

@@ -55,6 +55,7 @@ class Graph:
 
     def __init__(self, limit=400000):
         self.nodes, self.reads, self._known, self.limit = [], [], {}, limit
+        self.names = {}  # of coordinates, as the function has them
 
     def leaf(self, *node):
         return self._add(node, _LEAVES[node[0]])

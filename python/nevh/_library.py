@@ -149,11 +149,11 @@ scene_system:pp scene_start:ippp scene_run_settings:Rp scene_transform:pp
 scene_stops:bp scene_stop_text:sp scene_vary:ippz scene_set_outcomes:ips
 system_from:pzpp system_free:-p system_status:ip system_message:sp system_probe:ipdpppp
 system_traits:ip system_friction:bpp integrator_named:ps integrator_name:sp
-integrator_adaptive:bp integrator_own_time:bp integrator_needs:ip integrators:p scene_integrator_named:pps integrator_facts:ipp
+integrator_adaptive:bp integrator_own_time:bp integrator_needs:ip integrator_order:ip integrator_symplectic:ip integrators:p scene_integrator_named:pps integrator_facts:ipp
 scheme_shortfall:sppz energy_observe:ipzdpp
 integrator_needs_formulas:bp gradient_named:ps gradient_name:sp gradients:p
 stepper_new:pppp stepper_free:-p stepper_status:ip stepper_message:sp
-stepper_time:dp stepper_taken:zp stepper_counts:Cp stepper_order:ip run_at:ipdddpzpppppz
+stepper_time:dp stepper_taken:zp stepper_counts:Cp stepper_order:ip run_at:ipdddpzpppppz run_until:ipdddpppz
 energy_new:ppp energy_free:-p energy_status:ip energy_message:sp energy_follow:ipp
 energy_passed:dpp
 energy_expect:ipp energy_set_scale:ipd energy_result:Epz verdict_settle:ipppp

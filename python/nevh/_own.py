@@ -90,7 +90,10 @@ class Integrator:
 
     def _read_facts(self):
         facts, text = _Facts(), c.create_string_buffer(400)
-        if _lib.integrator_facts(self._pointer, c.byref(facts)):
+        if _lib.integrator_facts(self._pointer, c.byref(facts)):  # Tao's have no table
+            self.order = _lib.integrator_order(self._pointer)
+            self.symmetric = self.symplectic = True
+            self.shortfall = ""
             return
         self.order, self.symmetric = facts.order, facts.symmetric
         self.symplectic = facts.symplectic

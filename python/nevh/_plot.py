@@ -5,7 +5,7 @@ SPDX-License-Identifier: GPL-3.0-or-later
 
 from __future__ import annotations
 
-from ._library import Refused
+from ._library import _lib, Refused
 from ._looks import colours as _colours, looks as _looks, marks as _marks
 
 # Columns x, y and by, and which axes are logarithmic, for tables that have x and y.
@@ -31,10 +31,20 @@ def _axes(ax):
     return pyplot.subplots()[1]
 
 
+def _number_of(name):
+    """FNV-1a, as tools/plot/looks.c."""
+    number = 2166136261
+    for letter in name:
+        number = (number ^ letter) * 16777619 % 2**32
+    return number
+
+
 def style(name):
     """The colour and the mark of an integrator, the same in all pictures."""
-    plain = str(name).partition("+")[0]
-    k = _looks.index(plain) if plain in _looks else sum(map(ord, plain))
+    plain = str(name).partition("+")[0].encode()
+    known = _lib.integrator_named(plain)
+    shown = _lib.integrator_name(known).decode() if known else None
+    k = _looks.index(shown) if shown in _looks else len(_looks) + _number_of(plain) % 64
     mark = _marks[k % len(_marks)].split()
     return {"color": _colours[k % len(_colours)], "marker": mark[0],
             "fillstyle": "none" if mark[1:] else "full"}

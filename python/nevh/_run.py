@@ -21,12 +21,13 @@ from ._progress import Progress
 class _Plan:
     """A stepper and what watches it."""
 
-    def __init__(self, subject, name, gradient, y, t0, tolerance, gradient_step):
+    def __init__(self, subject, name, gradient, y, t0, tolerance, gradient_step, width=1,
+                 steps=0):
         self.subject = subject
         self._made_of = (subject, name, gradient, list(y[0]), t0, tolerance, gradient_step)
         integrator, transformed = _integrator(name)
-        o = self.options = _Options(t=t0, q=y[1], p=y[1] + 8 * subject.n,
-                                    tolerance=tolerance)
+        o = self.options = _Options(t=t0, q=y[1], p=y[1] + 8 * subject.n * width,
+                                    tolerance=tolerance, width=width, steps_foreseen=steps)
         if gradient is None:  # none is taken: nothing is to be planned
             o.gradient, gradient_step = _gradient("central2"), 1
         else:
@@ -72,26 +73,45 @@ def _plan_again(subject, name, gradient, y, t0, tolerance, gradient_step):
     return _Plan(subject, name, gradient, _numbers(y), t0, tolerance, gradient_step)
 
 
+_signals = [getattr(signal, name) for name in (
+    "SIGINT", "SIGALRM", "SIGTERM", "SIGHUP", "SIGUSR1", "SIGUSR2") if hasattr(signal, name)]
+
+
 class _Interrupt:
-    """While the library runs, the interrupt key is noted, to be raised after."""
+    """While the library runs, signals are noted: what their handlers raised as a callback
+    begins would be lost."""
 
     def __init__(self):
-        self.pressed = False
-        self.before = None
+        self.pressed = False  # other threads are to end
+        self.before, self.noted = {}, []
 
     def __enter__(self):
-        main = threading.current_thread() is threading.main_thread()
-        if main and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-            self.before = signal.signal(signal.SIGINT, self.note)
+        if threading.current_thread() is threading.main_thread():
+            for one in _signals:
+                handler = signal.getsignal(one)
+                if callable(handler):
+                    self.before[one] = handler
+                    signal.signal(one, self.note)
         return self
 
-    def note(self, *_):
-        self.pressed = True
+    def note(self, *given):
+        self.noted.append(given)
 
-    def __exit__(self, *_):
-        if self.before is not None:
-            signal.signal(signal.SIGINT, self.before)
-            self.before = None
+    def handle(self):
+        """Calls the handlers of what was noted, in the main thread."""
+        if self.pressed:
+            raise KeyboardInterrupt
+        while self.noted and threading.current_thread() is threading.main_thread():
+            number, frame = self.noted.pop(0)
+            self.before[number](number, frame)
+
+    def __exit__(self, kind, *_):
+        if threading.current_thread() is threading.main_thread() and self.before:
+            for one, handler in self.before.items():
+                signal.signal(one, handler)
+            if kind is None:
+                self.handle()
+            self.before = {}
 
 
 def _watcher(observe, n, trap, interrupt, progress=None):
@@ -101,8 +121,7 @@ def _watcher(observe, n, trap, interrupt, progress=None):
 
     def watch(_, step, t, q, p):
         try:
-            if interrupt.pressed:
-                raise KeyboardInterrupt
+            interrupt.handle()
             if progress is not None:
                 progress(t)
             if observe is None:
@@ -116,6 +135,9 @@ def _watcher(observe, n, trap, interrupt, progress=None):
 
 
 def _times_of_steps(t0, t_end, h):
+    if abs((t_end - t0) / h) > 1e12:
+        raise Refused("steps of %g are %.2g until t = %g, more than can be kept: give "
+                      "t_eval, or a longer dt" % (abs(h), abs((t_end - t0) / h), t_end))
     count = round((t_end - t0) / h)
     if count > 0 and abs((t_end - t0) / h - count) <= 1e-9 * count:
         h = (t_end - t0) / count
@@ -208,6 +230,10 @@ def _run_watched(plan, t0, t_end, h, times, states_at, y, observe, every, interr
         status = _lib.run_at(plan.stepper, t0, h, t_end, times_at, len(times), states_at,
                              c.byref(kept), y[1], y[1] + 8 * n,
                              (_Observer * len(watched))(*watched), len(watched))
+        try:
+            interrupt.handle()
+        except BaseException as error:
+            subject.trap.error = subject.trap.error or error
     return status, kept.value
 
 
@@ -253,15 +279,21 @@ def _run_plan(plan, t0, t_end, h, times, y, observe, every, interrupt=None):
     return status, result
 
 
+def warn_of(verdict, report, level):
+    """Warns where errors of the energy are as large as the energy."""
+    if verdict == "unstable" and report.max > 1:
+        warnings.warn(
+            f"The energy changes by up to {report.max:.2g} times its scale: these "
+            "steps are no measure of the orbit; take a smaller dt, or another "
+            "integrator.", RuntimeWarning, stacklevel=level)
+
+
 def _judge(result, plan, report, status, run):
     """Adds the verdict to a result, or how it is found; warns of large errors."""
     t0, h, t_end, start = run
     verdict = verdicts[report.verdict]
-    if verdict == "unstable" and not status and report.max > 1:
-        warnings.warn(
-            f"The energy changes by up to {report.max:.2g} times its scale: these "
-            "steps are no measure of the orbit; take a smaller dt, or another "
-            "integrator.", RuntimeWarning, stacklevel=5)
+    if not status:
+        warn_of(verdict, report, 6)
     if verdict == "undecided" and not status and not plan.subject.calls_python:
         result._settle = _settler(plan, t0, h, t_end, start, report)
     else:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 import os
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Callable, Mapping, Sequence
 
 from ._library import (_check, Failed, _gradient, _integrator, _lib, Refused, _STOPPED,
@@ -17,9 +16,8 @@ from ._scene import Scene
 from ._functions import _Subject
 from ._events import DenseOutput, Events
 from ._own import Integrator, run_steps
-from ._run import (_choose, _Interrupt, _Plan, _run_plan, _steps, _takes_none,
-                   _times_of_steps)
-from ._progress import Progress
+from ._members import runs_of_members, starts_of, together
+from ._run import _choose, _Plan, _run_plan, _steps, _takes_none, _times_of_steps
 
 
 def _span(scene, t_span):
@@ -272,59 +270,16 @@ class _Problem:
         return result
 
 
-def _runs_of_members(H, t_span, y0, given):
-    """The orbits of members, on all processors; what they share is found once, but of
-    functions that run as Python."""
-    problem = _Problem(H, t_span, y0[:, 0], **given)
-    shares = problem.shares()
-    interrupt = _Interrupt()
-
-    def run(start):
-        if interrupt.pressed:
-            raise KeyboardInterrupt
-        return (problem.orbit(start, interrupt) if shares else
-                _Problem(H, t_span, start, **given).orbit(start))
-    runs = [run(y0[:, 0])]  # a function is compiled alone
-    with Progress("solve") as progress, ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-        try:
-            for made in pool.map(run, y0.T[1:]):
-                runs.append(made)
-                progress.at(len(runs) / y0.shape[1])
-        except KeyboardInterrupt:
-            interrupt.pressed = True
-            raise
-    return runs
-
-
 def _solve_members(H, t_span, y0, given):
-    """The orbits of an ensemble: y has the shape (2n, members, times)."""
-    if np is None:
-        raise ImportError("an ensemble needs NumPy")
-    try:
-        y0 = np.asarray(y0, float)
-    except (TypeError, ValueError):
-        raise Refused("y0 takes real numbers, 2n or (2n, members), not %.80r"
-                      % (y0,)) from None
-    if given["events"] is not None or given["dense_output"]:
-        raise Refused("events and dense_output are of one orbit: y0 has the shape %s"
-                      % (y0.shape,))
-    if not y0.shape[1]:
-        raise Refused("y0 has the shape %s: there is no member" % (y0.shape,))
-    runs = _runs_of_members(H, t_span, y0, given)
-    kept = min(len(run.t) for run in runs)
-    same = {name: runs[0][name] for name in ("method", "dt", "tolerance", "gradient",
-                                             "names")}
-    first = next((run for run in runs if run.status < 0), runs[0])
-    result = Result(
-        t=runs[0].t[:kept], y=np.stack([run.y[:, :kept] for run in runs], 1),
-        nfev=sum(run.nfev for run in runs), status=first.status, success=first.success,
-        message=first.message, energy_error=np.array([run.energy_error for run in runs]),
-        energy_drift=np.array([run.energy_drift for run in runs]),
-        t_reached=np.array([run.t_reached for run in runs]),
-        y_reached=np.stack([run.y_reached for run in runs], 1), members=runs, sol=None,
-        t_events=None, y_events=None, **same)
-    result._settle = lambda: np.array([run.verdict for run in runs])
-    return result
+    """The orbits of an ensemble, whose problem is found once, but for functions that run
+    as Python."""
+    y0 = starts_of(y0, given)
+    problem = _Problem(H, t_span, y0[:, 0], **given)
+
+    def alone(start, interrupt):
+        return problem.orbit(start, interrupt) if problem.shares() else \
+            _Problem(H, t_span, start, **given).orbit(start)
+    return together(runs_of_members(problem, y0, alone))
 
 
 def solve(H: Any, t_span: Sequence[float] | None = None,

@@ -51,6 +51,10 @@ def sweep(scene: str | os.PathLike | Scene, vary: Any = None,
     A warning says how many members failed, and why the first did.  The interrupt key
     ends the sweep; the exception's `result` is the array, with status 0 of members that
     are not done.
+
+    >>> made = nevh.sweep("pendulum", {"phi": [1, 2]}, "period", dt=0.05, t_end=20)
+    >>> len(made) > 0
+    True
     """
     if np is None:
         raise ImportError("nevh.sweep needs NumPy")

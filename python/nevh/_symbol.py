@@ -10,6 +10,8 @@ import os
 import sys
 import sysconfig
 
+from ._graph import OPERATIONS
+
 _here = os.path.join(os.path.dirname(os.path.abspath(__file__)), "")
 _library = tuple(os.path.join(sysconfig.get_paths()[name], "")
                  for name in ("stdlib", "platstdlib"))
@@ -80,12 +82,16 @@ def _node(graph, x):
 
 
 def _kind(x):
-    return "a complex number" if isinstance(x, complex) else \
+    return "a complex number" if isinstance(x, (complex, Complex)) else \
         "a value of the type %s" % type(x).__name__
 
 
 def apply(operation, *of):
-    """A symbol for an operation of symbols and numbers."""
+    """A symbol for an operation of symbols and numbers, Complex where one is."""
+    if any(isinstance(x, (complex, Complex)) for x in of):
+        return _apply_complex(operation, *of)
+    if not any(isinstance(x, Symbol) for x in of):
+        return OPERATIONS[operation](*of)
     graph = next(x.graph for x in of if isinstance(x, Symbol))
     if len(graph.nodes) > graph.limit:
         refuse("it takes more than %d operations" % graph.limit)
@@ -94,7 +100,7 @@ def apply(operation, *of):
 
 def _takes(x):
     """Whether an operator may be tried with x, else it is x's to do."""
-    return isinstance(x, Symbol) or is_number(x) or isinstance(x, complex)
+    return isinstance(x, (Symbol, Complex, complex)) or is_number(x)
 
 
 def _operator(operation, reflected=False):
@@ -111,7 +117,8 @@ def _compared(sign):
         decided = self.graph.decide
         if decided is not None:
             return decided(sign, self, other)
-        refuse("it compares (%s) a value that changes along the orbit" % sign
+        refuse("it compares (%s) a value that changes along the orbit (formulas have min, "
+               "max, abs and sign, no branches)" % sign
                if self.changes or isinstance(other, Symbol) and other.changes else
                "it compares (%s) a parameter" % sign, self, other)
     return method
@@ -121,7 +128,8 @@ def _became(kind):
     def method(self, *_):
         if self.graph.decide is not None:
             return self.graph.decide(kind, self, None)
-        refuse("it makes a plain number of a value, by %s" % kind, self)
+        refuse("it makes a plain number of a value, by %s (operators, math and numpy are "
+               "followed)" % kind, self)
     return method
 
 
@@ -184,9 +192,9 @@ class Symbol:
     def real(self):
         return self
 
-    def conjugate(self):
+    def conjugate(self, *_):
         return self
-    conj = copy = item = conjugate
+    conj = copy = item = __copy__ = __deepcopy__ = conjugate
 
     __radd__ = _operator("+", True)
     __rsub__ = _operator("-", True)
@@ -212,6 +220,94 @@ class Symbol:
 numbers.Real.register(Symbol)  # as functions ask of their arguments
 
 
+def _refuses(what):
+    def method(self, *_):
+        refuse("it %s" % what, self.real, self.imag)
+    return method
+
+
+class Complex:
+    """A complex number whose parts are symbols or numbers."""
+
+    __slots__ = ("real", "imag")
+    __array_priority__ = 1000
+    ndim, shape, size = 0, (), 1
+
+    def __init__(self, real, imag):
+        self.real, self.imag = real, imag
+
+    def conjugate(self):
+        return Complex(self.real, -self.imag)
+    conj = conjugate
+
+    def __pos__(self):
+        return self
+
+    def __neg__(self):
+        return Complex(-self.real, -self.imag)
+
+    def __abs__(self):
+        return apply("abs", self)
+
+    def item(self):
+        return self
+    copy = item
+    __add__, __sub__, __mul__, __truediv__, __pow__ = map(_operator, "+-*/^")
+    __radd__, __rsub__, __rmul__, __rtruediv__, __rpow__ = (
+        _operator(sign, True) for sign in "+-*/^")
+    __eq__, __ne__, __lt__, __le__, __gt__, __ge__, __bool__ = (
+        _refuses("compares a complex number that changes along the orbit"),) * 7
+    __float__, __int__, __complex__, __hash__ = (
+        _refuses("makes a plain number of a complex value"),) * 4
+
+
+def _complex_power(z, exponent):
+    """Whole powers as products, others by modulus and angle."""
+    if not is_number(exponent) or exponent % 1 or abs(exponent) > 32:
+        return _apply_complex("exp", exponent * _apply_complex("log", z))
+    found = product([z] * int(abs(exponent))) if exponent else 1.0
+    return 1.0 / found if exponent < 0 else found
+
+
+def _complex_quotient(a, b):
+    if not has_imaginary(b):
+        return Complex(a.real / b.real, a.imag / b.real)
+    below = b.real * b.real + b.imag * b.imag
+    return Complex((a.real * b.real + a.imag * b.imag) / below,
+                   (a.imag * b.real - a.real * b.imag) / below)
+
+
+def has_imaginary(z):
+    return isinstance(z.imag, Symbol) or z.imag != 0
+
+
+_OF_COMPLEX = {
+    "+": lambda a, b: Complex(a.real + b.real, a.imag + b.imag),
+    "-": lambda a, b: Complex(a.real - b.real, a.imag - b.imag),
+    "*": lambda a, b: Complex(a.real * b.real - a.imag * b.imag,
+                              a.real * b.imag + a.imag * b.real),
+    "/": _complex_quotient, "^": _complex_power,
+    "abs": lambda z: apply("hypot", z.real, z.imag),
+    "phase": lambda z: apply("atan2", z.imag, z.real),
+    "exp": lambda z: Complex(apply("exp", z.real) * apply("cos", z.imag),
+                             apply("exp", z.real) * apply("sin", z.imag)),
+    "log": lambda z: Complex(apply("log", abs(z)), _apply_complex("phase", z)),
+    "sqrt": lambda z: _complex_power(z, 0.5),
+    "sin": lambda z: (_exp_i(z) - _exp_i(-z)) / 2j,
+    "cos": lambda z: (_exp_i(z) + _exp_i(-z)) / 2}
+
+
+def _exp_i(z):
+    return apply("exp", 1j * z)
+
+
+def _apply_complex(operation, *of):
+    if operation not in _OF_COMPLEX:
+        refuse("it takes %s of a complex number" % operation,
+               *(part for x in of for part in (x.real, x.imag)))
+    return _OF_COMPLEX[operation](*of)
+
+
 # What `math` has.
 
 def _of(operation):
@@ -221,14 +317,12 @@ def _of(operation):
 
 
 def _log(x, base=None):
-    found = apply("log", x) if isinstance(x, Symbol) else math.log(x)
-    if base is None:
-        return found
-    return found / (apply("log", base) if isinstance(base, Symbol) else math.log(base))
+    found = apply("log", x)
+    return found if base is None else found / apply("log", base)
 
 
 def square_root(x):
-    return apply("sqrt", x) if isinstance(x, Symbol) else math.sqrt(x)
+    return apply("sqrt", x)
 
 
 def total(values, start=0):
@@ -239,7 +333,9 @@ def total(values, start=0):
 
 def length(values):
     """The Euclidean length of a row."""
-    return square_root(total(x * x for x in values))
+    return square_root(total(
+        x.real * x.real + x.imag * x.imag if isinstance(x, (Complex, complex)) else x * x
+        for x in values))
 
 
 def product(values, start=1):
@@ -266,7 +362,7 @@ def extreme(operation):
 
 def has_symbol(x):
     """Whether x is a symbol or a row or an array with one."""
-    if isinstance(x, Symbol):
+    if isinstance(x, (Symbol, Complex)):
         return True
     if getattr(x, "dtype", None) == object:
         x = x.ravel().tolist() if getattr(x, "ndim", 0) else [x.item()]
@@ -292,6 +388,10 @@ FUNCTIONS.update(
     hypot=lambda *of: apply("hypot", *of) if len(of) == 2 else length(of),
     dist=lambda p, q: length(a - b for a, b in zip(p, q)),
     sumprod=lambda p, q: total(a * b for a, b in zip(p, q)),
+    copysign=lambda x, y: abs(x) * apply("sign", y),
+    fmod=lambda x, y: apply("sign", x) * apply("mod", abs(x), abs(y)),
+    phase=lambda z: apply("atan2", z.imag, z.real),
+    isfinite=lambda x: True, isnan=lambda x: False, isinf=lambda x: False,
     degrees=lambda x: x * (180 / math.pi), radians=lambda x: x * (math.pi / 180))
 
 
@@ -331,7 +431,7 @@ def scalar(x):
 
 class _Kind(type):
     def __instancecheck__(cls, x):
-        return isinstance(x, (cls.plain, Symbol))
+        return isinstance(x, (cls.plain, cls.symbol))
 
     def __subclasscheck__(cls, kind):
         return issubclass(kind, cls.plain)
@@ -339,8 +439,20 @@ class _Kind(type):
 
 class Float(float, metaclass=_Kind):
     """float, of which a symbol is one already."""
-    plain = float
+    plain, symbol = float, Symbol
 
     def __new__(cls, x=0.0):
         x = scalar(x)
         return x if isinstance(x, Symbol) else float(x)
+
+
+class ComplexNumber(complex, metaclass=_Kind):
+    """complex, of symbols or numbers."""
+    plain, symbol = complex, Complex
+
+    def __new__(cls, real=0.0, imag=0.0):
+        real, imag = scalar(real), scalar(imag)
+        if not has_symbol([real, imag]):
+            return complex(real, imag)
+        made = Complex(real.real, real.imag)
+        return made + 1j * imag if has_symbol(imag) or imag else made

@@ -3,20 +3,19 @@
 SPDX-License-Identifier: GPL-3.0-or-later
 """
 
-import functools
+import math
 import operator
-import types
 
 import numpy as np
 
-from ._symbol import (Float, FUNCTIONS, NUMPY_NAMES, Symbol, apply, extreme, has_symbol, length,
-                     product, refuse, total)
+from ._symbol import (Complex, ComplexNumber, Float, FUNCTIONS, NUMPY_NAMES, Symbol, apply,
+                      extreme, has_symbol, refuse, total)
 
 
 def _or_number(known, plain):
     """A function of symbols, or that of NumPy where all are numbers."""
     def function(*of):
-        return known(*of) if any(isinstance(x, Symbol) for x in of) else plain(*of)
+        return known(*of) if has_symbol(of) else plain(*of)
     return function
 
 
@@ -28,7 +27,7 @@ def _heaviside(x, middle):
 
 def _refused(name):
     def function(*of):
-        refuse("formulas have no numpy.%s" % name, *of)
+        refuse("formulas have no %s%s" % ("numpy." * hasattr(np, name), name), *of)
     return function
 
 
@@ -40,7 +39,8 @@ _ELEMENTS = {
     "mod": operator.mod, "floor_divide": operator.floordiv, "power": operator.pow,
     "less": operator.lt, "less_equal": operator.le, "greater": operator.gt,
     "greater_equal": operator.ge, "equal": operator.eq, "not_equal": operator.ne,
-    "divmod": divmod, "conjugate": lambda x: x, "square": lambda x: x * x, "reciprocal": lambda x: 1 / x,
+    "divmod": divmod, "conjugate": lambda x: x.conjugate(),
+    "square": lambda x: x * x, "reciprocal": lambda x: 1 / x,
     "maximum": extreme("max"), "minimum": extreme("min"), "fmax": extreme("max"),
     "fmin": extreme("min"),
     "logaddexp": lambda a, b: np.log(np.exp(a) + np.exp(b)),
@@ -69,7 +69,7 @@ def _plain(x):
 
 def _objects(x):
     """x as an array of objects, of which numbers are Python's."""
-    if isinstance(x, Symbol):
+    if isinstance(x, (Symbol, Complex)):
         array = np.empty((), object)
         array[()] = x
         return array
@@ -91,15 +91,18 @@ def made(x):
 
 def _ufunc(ufunc, method, *inputs, out=None, where=True, dtype=None, casting=None,
            order=None, subok=None, **named):
-    if where is not True:
+    if where is not True and (method != "reduce" or has_symbol([where])):
         refuse("it uses where= of numpy.%s" % ufunc.__name__, *inputs)
     if ufunc.__name__ == "matmul":
         result = _matmul(*inputs)
+    elif method == "at":
+        return _at(_element(ufunc), *inputs)
     else:
         of = [_objects(x) for x in inputs]
         lifted = np.frompyfunc(_element(ufunc), len(inputs) if method == "__call__" else 2,
                                ufunc.nout)
-        result = made(getattr(lifted, method)(*of, **named))
+        result = made(_reduced(lifted, of[0], ufunc.identity, where, **named)
+                      if method == "reduce" else getattr(lifted, method)(*of, **named))
         if all(kind.endswith("?") for kind in ufunc.types) and isinstance(
                 result, Symbols):
             result = result.view(np.ndarray).astype(bool)
@@ -112,12 +115,39 @@ def _ufunc(ufunc, method, *inputs, out=None, where=True, dtype=None, casting=Non
     return out[0]
 
 
+def _reduced(lifted, x, neutral, where, axis=0, initial=None, keepdims=False):
+    """ufunc.reduce, one axis after the other."""
+    if where is not True:
+        x = np.where(where, x, neutral)
+    axes = tuple(range(x.ndim)) if axis is None else axis if isinstance(axis, tuple) else \
+        (axis,)
+    for k in sorted((k % max(x.ndim, 1) for k in axes), reverse=True):
+        x = lifted.reduce(x, axis=k, keepdims=keepdims)
+    known = initial is not None and initial is not np._NoValue
+    return lifted(_objects(x), initial) if known else x
+
+
 def _array_ufunc(self, ufunc, method, *inputs, **named):
     return _ufunc(ufunc, method, *inputs, **named)
 
 
-Symbol.__array_ufunc__ = _array_ufunc
+def _at(element, array, indices, *of):
+    """ufunc.at: each index in its turn, also where it comes twice."""
+    places = np.arange(array.size).reshape(array.shape)[indices]
+    others = [np.broadcast_to(_objects(x), places.shape).ravel().tolist() for x in of]
+    flat = array.reshape(-1)
+    for k, place in enumerate(places.ravel().tolist()):
+        flat[place] = element(flat[place], *(x[k] for x in others))
+    array[...] = flat.reshape(array.shape)
+
+
+Symbol.__array_ufunc__ = Complex.__array_ufunc__ = _array_ufunc
 Float.dtype = np.dtype(float)  # what numpy.zeros(3, dtype=float) makes of it
+ComplexNumber.dtype = np.dtype(complex)
+
+
+#: Functions of NumPy for arrays of symbols, where NumPy's do not do: _symbol_functions's.
+OWN = {}
 
 
 class Symbols(np.ndarray):
@@ -133,10 +163,13 @@ class Symbols(np.ndarray):
         own = OWN.get(function)
         if own is not None:
             return made(own(*of, **named))
+        if function.__module__ == "numpy.linalg" and function not in (
+                np.linalg.matrix_power, np.linalg.multi_dot):
+            refuse("formulas have no numpy.linalg.%s" % function.__name__, *_flat(of))
         return made(super().__array_function__(function, (Symbols,), of, named))
 
     def astype(self, dtype, *_, **__):
-        if np.dtype(dtype).kind not in "fO":
+        if np.dtype(dtype).kind not in "fcO":
             if not has_symbol(self):
                 return self.view(np.ndarray).astype(dtype)
             refuse("it makes numbers of the type %s" % np.dtype(dtype), *self.ravel())
@@ -146,21 +179,23 @@ class Symbols(np.ndarray):
     def dot(self, other):
         return _dot(self, other)
 
-    def sum(self, axis=None, **named):
-        return np.add.reduce(self, axis=axis) if axis is not None else \
-            total(self.ravel().tolist())
+    def sum(self, axis=None, dtype=None, out=None, **named):
+        return np.add.reduce(self, axis=axis, out=out, **named) if named or \
+            axis is not None or out is not None else total(self.ravel().tolist())
 
     def mean(self, axis=None, **named):
-        return _mean(self, axis)
+        return _mean(self, axis, **named)
 
-    def prod(self, axis=None, **named):
-        return np.multiply.reduce(self.ravel() if axis is None else self, axis=axis or 0)
+    def prod(self, axis=None, dtype=None, **named):
+        return np.multiply.reduce(self, axis=axis, **named)
 
     def max(self, axis=None, **named):
-        return np.maximum.reduce(self.ravel() if axis is None else self, axis=axis or 0)
+        return np.maximum.reduce(self.ravel() if axis is None and not named else self,
+                                 axis=axis or 0 if not named else axis, **named)
 
     def min(self, axis=None, **named):
-        return np.minimum.reduce(self.ravel() if axis is None else self, axis=axis or 0)
+        return np.minimum.reduce(self.ravel() if axis is None and not named else self,
+                                 axis=axis or 0 if not named else axis, **named)
 
     def var(self, axis=None, **named):
         return _var(self, axis)
@@ -170,10 +205,20 @@ class Symbols(np.ndarray):
 
     @property
     def real(self):
-        return self
+        return _each(lambda x: x.real, self)
+
+    @property
+    def imag(self):
+        return _each(lambda x: x.imag, self)
 
     def conj(self):
-        return self
+        return np.conjugate(self)
+    conjugate = conj
+
+
+def _each(function, a):
+    """A function of one element for an array, or for a symbol."""
+    return made(np.frompyfunc(function, 1, 1)(_objects(a)))
 
 
 def _matmul(a, b):
@@ -185,12 +230,22 @@ def _dot(a, b, out=None):
 
 
 def _sum(a, axis=None, **named):
-    return symbols(a).sum(axis=axis)
+    return symbols(a).sum(axis=axis, **named)
 
 
-def _mean(a, axis=None, **named):
-    a = symbols(a)
-    return a.sum(axis=axis) / (a.size if axis is None else a.shape[axis])
+def _mean(a, axis=None, dtype=None, out=None, **named):
+    a, axes = symbols(a), axis if isinstance(axis, tuple) else (axis,)
+    if not set(named) <= {"keepdims"}:
+        refuse("numpy.mean is known of all elements", *_flat(a))
+    return a.sum(axis=axis, **named) / (
+        a.size if axis is None else math.prod(a.shape[k] for k in axes))
+
+
+def _flat(x):
+    """The symbols of rows or arrays, in a row."""
+    if isinstance(x, (list, tuple)):
+        return [one for part in x for one in _flat(part)]
+    return x.ravel().tolist() if isinstance(x, np.ndarray) and x.dtype == object else [x]
 
 
 def _var(a, axis=None, **named):
@@ -217,245 +272,6 @@ def _gradient_of(f, *spacing, axis=None, **named):
     return np.concatenate([ends[0], (f[2:] - f[:-2]) / (2 * h), ends[1]])
 
 
-def _norm(a, ord=None, axis=None, keepdims=False):
-    a = symbols(a)
-    if ord not in (None, 2, "fro") or (a.ndim > 1 and axis is None and ord == 2):
-        if ord == 1 and a.ndim == 1:
-            return _sum(abs(a))
-        refuse("formulas have no numpy.linalg.norm with ord=%r" % ord, *a.ravel())
-    if axis is None:
-        return length(a.ravel().tolist())
-    rows = np.moveaxis(a, axis, -1)
-    found = np.empty(rows.shape[:-1], object)
-    for index in np.ndindex(*found.shape):
-        found[index] = length(rows[index].tolist())
-    return made(np.expand_dims(found, axis) if keepdims else found)
-
-
-def _minor(a, i, j):
-    return [row[:j] + row[j + 1:] for k, row in enumerate(a) if k != i]
-
-
-def _det(rows):
-    if len(rows) == 1:
-        return rows[0][0]
-    return total((-1) ** j * rows[0][j] * _det(_minor(rows, 0, j))
-                 for j in range(len(rows)) if not _is_zero(rows[0][j]))
-
-
-def _is_zero(x):
-    return not isinstance(x, Symbol) and x == 0
-
-
-def _solve_rows(a, b):
-    """Solves a x = b: up to three rows by Cramer's rule, which no small pivot spoils,
-    else by elimination in the order given; the check of values tells if it was good."""
-    a, b = [list(row) for row in a], [list(row) for row in b]
-    n = len(a)
-    if n <= 3:
-        whole = _det(a)
-        return [[total((-1) ** (i + j) * _det(_minor(a, j, i)) * b[j][k]
-                       for j in range(n)) / whole if n > 1 else b[0][k] / whole
-                 for k in range(len(b[0]))] for i in range(n)]
-    for i in range(n):
-        pivot = next((k for k in range(i, n) if not _is_zero(a[k][i])), i)
-        a[i], a[pivot], b[i], b[pivot] = a[pivot], a[i], b[pivot], b[i]
-        for k in range(i + 1, n):
-            if not _is_zero(a[k][i]):
-                factor = a[k][i] / a[i][i]
-                a[k] = [x - factor * y for x, y in zip(a[k], a[i])]
-                b[k] = [x - factor * y for x, y in zip(b[k], b[i])]
-    for i in reversed(range(n)):
-        for k in range(len(b[i])):
-            known = total(a[i][j] * b[j][k] for j in range(i + 1, n))
-            b[i][k] = (b[i][k] - known) / a[i][i]
-    return b
-
-
-def _square(a, what):
-    a = symbols(a)
-    if a.ndim != 2 or a.shape[0] != a.shape[1]:
-        refuse("numpy.linalg.%s is known of one square matrix" % what, *a.ravel())
-    return a
-
-
-def _solve(a, b):
-    a, b = _square(a, "solve"), symbols(b)
-    rows = b.reshape(len(b), -1).tolist()
-    found = np.empty((len(b), len(rows[0])), object)
-    found[...] = _solve_rows(a.tolist(), rows)
-    return made(found.reshape(b.shape))
-
-
-def _inv(a):
-    return _solve(a, np.eye(len(a)))
-
-
-def _determinant(a):
-    rows = _square(a, "det").tolist()
-    if len(rows) > 6:
-        refuse("numpy.linalg.det is known of up to 6 rows", *rows[0])
-    return _det(rows)
-
-
-def _cross(a, b, **named):
-    a, b = symbols(a), symbols(b)
-    if named or not a.shape[-1:] == b.shape[-1:] == (3,):
-        if named or not a.shape[-1:] == b.shape[-1:] == (2,):
-            refuse("numpy.cross is known of vectors in the last axis", *a.ravel())
-        return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-    return np.stack([a[..., i] * b[..., j] - a[..., j] * b[..., i]
-                     for i, j in ((1, 2), (2, 0), (0, 1))], axis=-1)
-
-
-def _einsum(rule, *of, **named):
-    """Products of all elements whose letters agree, summed."""
-    rule = rule.replace(" ", "") if isinstance(rule, str) else "."
-    if "." in rule:
-        refuse("numpy.einsum is known with letters for all axes", *of)
-    of = [symbols(x) for x in of]
-    left, arrow, right = rule.partition("->")
-    parts = left.split(",")
-    if not arrow:
-        right = "".join(sorted(c for c in set(left) - {","} if left.count(c) == 1))
-    size = {c: n for part, x in zip(parts, of) for c, n in zip(part, x.shape)}
-    summed = "".join(sorted(set(size) - set(right)))
-    found = np.empty([size[c] for c in right], object)
-    for index in np.ndindex(*found.shape):
-        at = dict(zip(right, index))
-        terms = []
-        for inner in np.ndindex(*[size[c] for c in summed]):
-            at.update(zip(summed, inner))
-            factors = [x[tuple(at[c] for c in part)] for part, x in zip(parts, of)]
-            if not any(map(_is_zero, factors)):
-                terms.append(product(factors))
-        found[index] = total(terms)
-    return made(found)
-
-
 def symbols(x):
     """x as an array of symbols and numbers."""
     return _objects(x).view(Symbols)
-
-
-def _constructor(plain):
-    """A function that makes arrays, for what will hold symbols: of objects."""
-    @functools.wraps(plain)
-    def function(*of, **named):
-        if has_symbol(of):
-            named.pop("dtype", None)
-            return made(plain(*map(_plain, of), dtype=object, **named))
-        array = plain(*of, **named)
-        if array.dtype.kind != "f":
-            return array
-        return made(array.astype(object)) if array.ndim else array
-    return function
-
-
-def _like(value):
-    def function(a, dtype=None, **named):
-        return _full(np.shape(a), value, dtype)
-    return function
-
-
-def _full(shape, value, dtype=None, **named):
-    if dtype is not None and np.dtype(dtype).kind not in "fO":
-        return np.full(shape, value, dtype)
-    array = np.empty(shape, object)
-    array[...] = value if isinstance(value, Symbol) else float(value)
-    return array.view(Symbols)
-
-
-def _filled(value):
-    return lambda shape, dtype=None, **named: _full(shape, value, dtype)
-
-
-def _keep(a, dtype=None, **named):
-    if isinstance(a, Symbols):
-        return a
-    return _array(a) if has_symbol([a]) else np.asarray(a, dtype, **named)
-
-
-_array = _constructor(np.array)
-
-#: What functions of NumPy are while a function is traced, whatever they are given.
-SUBSTITUTES = {
-    np.array: _array, np.asarray: _keep, np.asanyarray: _keep,
-    np.ascontiguousarray: _keep, np.zeros: _filled(0), np.empty: _filled(0),
-    np.ones: _filled(1), np.full: _full, np.zeros_like: _like(0),
-    np.empty_like: _like(0), np.ones_like: _like(1),
-    np.float64: Float, np.eye: _constructor(np.eye), np.identity: _constructor(np.identity)}
-
-
-def _substitute(own, plain):
-    """An own function where there are symbols, also in lists."""
-    @functools.wraps(plain)
-    def function(*of, **named):
-        if has_symbol(of):
-            return made(own(*of, **named))
-        return plain(*map(_plain, of), **named)
-    return function
-
-
-#: Functions of NumPy for arrays of symbols, where NumPy's do not do.
-OWN = {
-    np.dot: _dot, np.inner: lambda a, b: _dot(a, np.transpose(symbols(b))),
-    np.vdot: lambda a, b: _dot(np.ravel(symbols(a)), np.ravel(symbols(b))),
-    np.sum: _sum, np.mean: _mean, np.var: _var,
-    np.average: lambda a, axis=None, weights=None: _mean(a, axis) if weights is None else
-    _sum(symbols(a) * weights, axis) / np.sum(weights),
-    np.std: lambda a, axis=None, **n: np.sqrt(_var(a, axis)),
-    np.prod: lambda a, axis=None, **n: symbols(a).prod(axis),
-    np.max: lambda a, axis=None, **n: symbols(a).max(axis),
-    np.min: lambda a, axis=None, **n: symbols(a).min(axis),
-    np.clip: lambda a, low, high, **n: np.minimum(np.maximum(a, low), high),
-    np.around: _round, np.gradient: _gradient_of, np.linalg.norm: _norm,
-    np.linalg.inv: _inv, np.linalg.det: _determinant, np.linalg.solve: _solve,
-    np.cross: _cross, np.einsum: _einsum,
-    np.real: lambda a: a}
-OWN[np.amax], OWN[np.amin], OWN[np.round] = OWN[np.max], OWN[np.min], _round
-for _function in list(OWN):
-    SUBSTITUTES[_function] = _substitute(OWN[_function], _function)
-
-
-def elementwise(function):
-    """A function of numbers for arrays, as numpy.vectorize has it."""
-    def call(*of):
-        return made(np.frompyfunc(function, len(of), 1)(*map(_objects, of)))
-    return call
-
-
-class _UfuncTwin:
-    """A ufunc that takes lists of symbols, too."""
-
-    def __init__(self, ufunc):
-        self._ufunc = ufunc
-
-    def __call__(self, *of, **named):
-        return self._ufunc(*(symbols(x) if isinstance(x, (list, tuple)) and
-                             has_symbol(x) else x for x in of), **named)
-
-    def __getattr__(self, name):
-        return getattr(self._ufunc, name)
-
-
-def substitute(x):
-    """What stands for a function of NumPy while a function is traced, or None."""
-    try:
-        return _UfuncTwin(x) if isinstance(x, np.ufunc) else SUBSTITUTES.get(x)
-    except TypeError:
-        return None
-
-
-class NumpyTwin(types.ModuleType):
-    """The module numpy, or one of its parts, with these functions."""
-
-    def __init__(self, module):
-        super().__init__(module.__name__)
-        self.__dict__["_module"] = module
-
-    def __getattr__(self, name):
-        value = getattr(self._module, name)
-        if isinstance(value, types.ModuleType) and value.__name__.startswith("numpy"):
-            return NumpyTwin(value)
-        return substitute(value) or value

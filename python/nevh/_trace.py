@@ -15,6 +15,7 @@ import time
 
 from ._graph import EPSILON, Graph
 from ._graph_text import may_be_named, scene_text
+from ._names import noting
 from ._symbol import Symbol, Untraceable, frames_of, has_symbol, is_foreign, is_number
 from ._twin import Twins
 
@@ -38,7 +39,7 @@ class Calls:
     def __init__(self, function, n, args=(), parameters=None):
         self.function, self.n = function, n
         self.args, self.parameters = tuple(args), dict(parameters or {})
-        self.names, self.defaults, self.splits = [], {}, False
+        self.names, self.defaults, self.splits, self.rows = [], {}, False, []
         try:
             known = list(inspect.signature(function).parameters.values())
         except (TypeError, ValueError):
@@ -49,6 +50,7 @@ class Calls:
         self.splits = len(required) - len(self.args) == 3 and len(row) > 2 and (
             row[1].name.lower()[:1] in "qxr" and row[2].name.lower()[:1] in "pmv")
         first = 3 if self.splits else 2
+        self.rows = [row[1].name, row[2].name] if self.splits else []
         self.names = [p.name for p in row[first:first + len(self.args)]]
         self.defaults = {
             p.name: p.default for p in known if p.default is not p.empty and
@@ -91,7 +93,10 @@ class Calls:
 
 def as_number(x):
     """What a function returned, as a float: arrays of one number are one."""
-    return float(x.item() if hasattr(x, "dtype") and x.size == 1 else x)
+    try:
+        return float(x.item() if hasattr(x, "dtype") and x.size == 1 else x)
+    except (TypeError, ValueError):
+        raise TypeError("H returns %.80r, which is no real number" % (x,)) from None
 
 
 def array(values):
@@ -145,7 +150,7 @@ class _Trace:
                 self.symbolic = {}
         self.check(graph, root)
         try:
-            text = scene_text(graph, root, self.coordinates(), self.y0, self.symbolic,
+            text = scene_text(graph, root, self.coordinates(graph), self.y0, self.symbolic,
                               self.title)
         except (ValueError, RecursionError) as error:
             raise Untraceable(str(error), self.definition()) from None
@@ -156,11 +161,15 @@ class _Trace:
         for name in names:
             self.symbolic.pop(name, None)
 
-    def coordinates(self):
-        """The coordinates' names, each with an index where they are an array."""
+    def coordinates(self, graph):
+        """The coordinates' names, each with an index where they are an array: those that
+        the function gives to them, to all of them; else that of its argument, or q."""
         if self.given is None:
-            name = next(name for name in ("q", "x", "u", "position")
-                        if name not in self.symbolic)
+            own = [graph.names.get(k) for k in range(self.calls.n)]
+            if len(set(own)) == self.calls.n and all(map(self.is_free, own)):
+                return [(name, None) for name in own]
+            name = next(filter(self.is_free, (*self.calls.rows[:1], "q", "x", "u",
+                                              "position")))
             return [(name, None)] if self.calls.n == 1 else \
                 [(name, k + 1) for k in range(self.calls.n)]
         found = []
@@ -169,6 +178,11 @@ class _Trace:
             found += [(at.group(1), k + 1) for k in range(int(at.group(2)))] if at else \
                 [(text, None)]
         return found
+
+    def is_free(self, name):
+        """Whether a coordinate may have that name."""
+        return name is not None and may_be_named(name) and name not in self.symbolic and \
+            name not in ("i", "p")
 
     def followed(self, decide=None):
         """The graph of the function, and the node of what it returns."""
@@ -180,10 +194,12 @@ class _Trace:
             return Symbol(graph, graph.leaf(*leaf))
         state = [symbol("q", k) for k in range(n)] + [symbol("p", k) for k in range(n)]
         if np is not None:
-            from ._symbol_arrays import symbols
+            from ._symbol_arrays import Symbols, symbols
             row = np.empty(2 * n, object)
             row[:] = state
-            state = symbols(row)
+            state = symbols(row).view(noting(Symbols))
+        else:
+            state = noting(list)(state)
         values = {name: symbol("parameter", name) for name in self.symbolic}
         twins = Twins()
         function = twins.of(self.calls.function)
@@ -289,7 +305,7 @@ class _Trace:
             return decided
         try:
             graph, root = self.followed(decide)
-            text = scene_text(graph, root, self.coordinates(), self.y0,
+            text = scene_text(graph, root, self.coordinates(graph), self.y0,
                               dict(self.symbolic), self.title)
         except Exception:
             return None

@@ -14,12 +14,13 @@ SPDX-License-Identifier: GPL-3.0-or-later
 
 import abc
 import builtins
+import cmath
 import functools
 import math
 import sys
 import types
 
-from ._symbol import Float, Symbol, extreme, is_foreign, taking_symbols
+from ._symbol import ComplexNumber, Float, Symbol, extreme, is_foreign, taking_symbols
 
 try:
     import numpy as np
@@ -29,19 +30,25 @@ except ImportError:
 _HEAP = 1 << 9  # Py_TPFLAGS_HEAPTYPE: a class that is written in Python
 _PLAIN = (int, float, complex, str, bytes, bool, type(None))
 _MATH = {}
-for _name in dir(math):
-    _function = getattr(math, _name)
-    if callable(_function):
-        _MATH[_function] = taking_symbols(_name, _function)
+for _module in (math, cmath):
+    for _name in dir(_module):
+        _function = getattr(_module, _name)
+        if callable(_function):
+            _MATH[_function] = taking_symbols(_name, _function)
 
 
 class _MathTwin(types.ModuleType):
+    def __init__(self, module):
+        super().__init__(module.__name__)
+        self.__dict__["_module"] = module
+
     def __getattr__(self, name):
-        value = getattr(math, name)
+        value = getattr(self._module, name)
         return _MATH.get(value, value) if callable(value) else value
 
 
-_BUILTINS = {max: extreme("max"), min: extreme("min"), float: Float}
+_BUILTINS = {max: extreme("max"), min: extreme("min"), float: Float,
+             complex: ComplexNumber}
 
 
 class Twins:
@@ -49,8 +56,8 @@ class Twins:
 
     def __init__(self):
         self.known, self.spaces, self.cells, self.kept = {}, {}, {}, []
-        self.builtins = dict(vars(builtins), max=extreme("max"), min=extreme("min"),
-                             float=Float, __import__=self._import)
+        self.builtins = dict(vars(builtins), __import__=self._import, **{
+            plain.__name__: own for plain, own in _BUILTINS.items()})
 
     def _import(self, name, *rest):
         return self.of(__import__(name, *rest))
@@ -71,7 +78,7 @@ class Twins:
         if isinstance(x, types.FunctionType):
             return self._function(x)
         if isinstance(x, type):
-            return Float if x is float else self._class(x)
+            return _BUILTINS.get(x) or self._class(x)
         if isinstance(x, types.MethodType):
             return types.MethodType(self.of(x.__func__), self.of(x.__self__))
         if isinstance(x, functools.partial):
@@ -96,15 +103,15 @@ class Twins:
 
     def _library(self, x):
         if np is not None:
-            from ._symbol_arrays import substitute
+            from ._symbol_functions import substitute
             return substitute(x) or _MATH.get(x) or _BUILTINS.get(x)
         return _MATH.get(x) or _BUILTINS.get(x)
 
     def _module(self, x):
-        if x is math:
-            return _MathTwin("math")
+        if x in (math, cmath):
+            return _MathTwin(x)
         if np is not None and (x is np or x.__name__.startswith("numpy.")):
-            from ._symbol_arrays import NumpyTwin
+            from ._symbol_functions import NumpyTwin
             return NumpyTwin(x)
         file = getattr(x, "__file__", None)
         if not file or is_foreign(file):
@@ -191,7 +198,7 @@ class Twins:
         return type(x)(map(self.of, x))
 
     def _vectorized(self, x):
-        from ._symbol_arrays import elementwise
+        from ._symbol_functions import elementwise
         return elementwise(self.of(x.pyfunc))
 
 

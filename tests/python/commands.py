@@ -36,11 +36,14 @@ def test_all_commands_are_functions():
     listed = json.loads(subprocess.run([nevh.command(), "help", "--format", "json"],
                                        stdout=subprocess.PIPE).stdout.decode())
     for of in listed["commands"]:
-        if of["name"] in ("help", "sweep", "gradients", "sheet", "mark"):
+        if of["name"] in ("help", "sweep"):
             continue
-        parameters = inspect.signature(getattr(nevh, of["name"])).parameters
+        function = getattr(nevh, of["name"]) if of["name"] != "gradients" else \
+            _commands._function("gradients")
+        parameters = inspect.signature(function).parameters
         here = [{"with": "with_effects", "without": "without_effects", "set": "parameters",
-                 "start": "y0", "from": "from_scene"}.get(name, name.replace("-", "_"))
+                 "start": "y0", "from": "from_scene", "for": "name",
+                 "as": "form"}.get(name, name.replace("-", "_"))
                 for name in of["options"]]
         left = set(here) - set(parameters) - {"format", "quiet", "help", "version"}
         assert left <= ({"output", "resume"} if "format" in of["options"] else set()), left
@@ -52,13 +55,13 @@ def test_examples_of_the_docstrings():
     shorter = {"cost": ("t_end=20", "t_end=2, budget=0.1"),
                "hard": ("integrators", "'Kepler e = 0.9', integrators")}
     count = 0
+    nevh.sheet(1, name="Ada", key=7, answers=True).to_csv("answers.csv")
     kits = [os.path.join(folder, "web/kit.html") for folder in (built, sources)]
-    for name in _commands._names():
+    for name in [*_commands._names(), "sweep"]:
         if name == "page" and not any(map(os.path.exists, kits)):
             print("there is no web/kit.html: nevh.page is not tried")
             continue
-        function = getattr(nevh, name) if name != "gradients" else \
-            _commands._function(name)
+        function = getattr(nevh, name)
         for test in doctest.DocTestFinder().find(function, name, globs={"nevh": nevh}):
             assert test.examples, name
             long, short = shorter.get(name, ("", ""))
@@ -68,7 +71,26 @@ def test_examples_of_the_docstrings():
             runner.run(test)
             assert not runner.failures, name
             count += 1
-    assert count >= 17, count
+    assert count >= 20, count
+
+
+def test_sheets_and_marks():
+    assert len(nevh.sheet()) == 9 and nevh.sheet()["answers"][0] == 6
+    made = nevh.sheet(1, name="Ada Lovelace", key=7, output="class")
+    assert [os.path.basename(row["file"]) for row in made] == [
+        "sheet-1-ada-lovelace.html", "sheet-1-ada-lovelace.ipynb"]
+    assert all(map(os.path.exists, made["file"]))
+    answers = nevh.sheet(1, name="Ada Lovelace", key=7, answers=True)
+    assert (answers["lowest"] < answers["answer"]).all()
+    answers[0]["answer"] *= 1.7
+    answers.to_csv("answers.csv")
+    marks = nevh.mark("answers.csv", key=7)
+    assert marks["verdict"][0] != "right" and set(marks["verdict"][1:]) == {"right"}
+    assert [word.lower() for word in marks.words] == ["ada lovelace: 5 of 6 are right"]
+    page = nevh.sheet(1, name="Ada Lovelace", key=7, output="class.html")
+    assert page["file"] == ["class.html"] and os.path.exists("class.html")
+    raised(nevh.Refused, "there is no sheet 77", nevh.sheet, 77)
+    raised(nevh.Refused, "No such file", nevh.mark, "no.csv")
 
 
 def test_tables():

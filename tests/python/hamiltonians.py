@@ -1,5 +1,5 @@
 """Forty Hamiltonians as people write them in Python, each beside the same one as a scene
-formula: what tests/python/traced.py and bench/functions.py try.
+formula: what tests/python/traced.py and bench/python.py try.
 
 `cases` is a list of Case: name, H, start, text and more.  Coordinates of the texts are
 q for one degree of freedom, else q[1..n].

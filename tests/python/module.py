@@ -702,6 +702,77 @@ def test_sweep_is_the_commands():
             assert np.array_equal(mine[name], file[name], equal_nan=True), name
 
 
+def test_handlers_of_signals_may_raise():
+    """What a handler raises ends the run; one that does not raise lets it go on."""
+    called = []
+
+    def late(*_):
+        called.append(1)
+        if len(called) > 1:
+            raise TimeoutError("late")
+    before = signal.signal(signal.SIGALRM, late)
+    signal.setitimer(signal.ITIMER_REAL, 0.2, 0.2)
+    try:
+        raised(TimeoutError, "late", nevh.solve, PENDULUM, (0, 1e7), [1, 0], "gauss4",
+               dt=0.01, t_eval=[1e7])
+        assert len(called) == 2 and signal.getsignal(signal.SIGALRM) is late
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def test_starts_that_are_no_numbers():
+    needs("NumPy")
+    ones = np.ones((2, 20))
+    for y0 in (np.ma.masked_array(ones, mask=np.eye(2, 20)), ones * 1j, ones.astype(str)):
+        raised(nevh.Refused, "real numbers", nevh.solve, PENDULUM, (0, 1), y0, "verlet",
+               dt=0.1)
+    for dt in (-1, math.nan, "a"):
+        raised(nevh.Refused, "dt = ", nevh.solve, PENDULUM, (0, 1), ones, "verlet", dt=dt)
+    raised(nevh.Refused, "give t_eval", nevh.solve, PENDULUM, (0, 1e18), [1, 0], "verlet",
+           dt=1e-3)
+    raised(TypeError, "H returns None", nevh.solve, lambda t, y: None, (0, 1), [1, 0],
+           "rk4", dt=0.1)
+
+
+def test_members_side_by_side():
+    """They are the orbits that they are alone, whatever is between; few plans are made."""
+    needs("NumPy")
+    from nevh import _members
+    plans, made = [], _members._Plan
+
+    def counted(*of):
+        plans.append(of)
+        return made(*of)
+    _members._Plan = counted
+    starts = np.linspace(0.1, 1, 2 * 41).reshape(2, 41)
+    given = (("verlet", 0.05, None), ("gauss4", 0.07, None), ("rk4", 0.05, [0, 0.5, 3]),
+             ("verlet", 0.05, np.linspace(0, 3, 31)))
+    try:
+        for method, dt, times in given:
+            del plans[:]
+            many = nevh.solve("p_x^2/2 - cos(x)", (0, 3), starts, method, dt=dt, t_eval=times)
+            assert 0 < len(plans) <= 1 + 41 // 8, len(plans)
+            for k in (0, 7, 40):
+                one = nevh.solve("p_x^2/2 - cos(x)", (0, 3), starts[:, k], method, dt=dt,
+                                 t_eval=times)
+                assert (one.y == many.y[:, k]).all() and (one.t == many.t).all(), (method, k)
+                assert one.energy_error == many.energy_error[k]
+                assert one.verdict == many.members[k].verdict
+                assert set(one) == set(many.members[k])
+        for other in (dict(t_eval=[0.03, 3]), dict(gradient="central4"), dict(method="tao2"),
+                      dict(method="dop853", dt=None)):
+            del plans[:]
+            named = dict(dict(method="verlet", dt=0.05), **other)
+            many = nevh.solve("p_x^2/2 - cos(x)", (0, 3), starts, **named)
+            one = nevh.solve("p_x^2/2 - cos(x)", (0, 3), starts[:, 9], **named)
+            assert not plans and (one.y[:, -1] == many.y[:, 9, -1]).all()
+        pole = np.array([[1.0] * 20 + [0.0], [0.0] * 21])  # the last has no H
+        raised(nevh.Error, "", nevh.solve, "p_x^2/2 + 1/x", (0, 1), pole, "verlet", dt=0.1)
+    finally:
+        _members._Plan = made
+
+
 def test_sweep_of_members_that_fail():
     needs("NumPy")
     import warnings

@@ -3,7 +3,9 @@
 SPDX-License-Identifier: GPL-3.0-or-later
 """
 
+import os
 import pickle
+import re
 import sys
 from fractions import Fraction
 
@@ -171,12 +173,48 @@ def test_compositions_of_what_is_no_table():
     again = pickle.loads(pickle.dumps(made))
     assert again.order == 4 and list(again.step.weights) == list(made.step.weights)
     for text, compose in (("add up to 1.1", {"avf": [0.5, 0.6]}), ("of numbers", {
-            "avf": ["2^(1/3)"]}), ("of numbers", {"avf": ["1/0"]}), ("no table", {"tao2": [1]}), ("no table", {"taylor": [1]})):
+            "avf": ["2^(1/3)"]}), ("of numbers", {"avf": ["1/0"]}), ("no table", {"taylor": [1]}), (
+                "back to front", {"tao2": [0.5, 0.3, 0.2]}), (
+                    "35 are possible", {"tao2": [1/37]*37})):
         raised(nevh.Refused, text, nevh.Integrator, "x", compose=compose)
     raised(nevh.Refused, "is a function", nevh.sweep, "pendulum", {"phi": [1]},
            "energy_error", made, dt=0.1, t_end=1)
     sol = nevh.solve(FORMULA, (0, 1), [1, 0], "verlet", dt=0.1, dense_output=True).sol
     raised(nevh.Refused, "not a real number", sol, "a")
+
+
+def test_compositions_of_taos_steps():
+    """Those of tao4 and tao6 from their own weights; one wrong digit tells."""
+    mixed, a, b = "(1 + x^2)*p_x^2/2 + x^2/2", 1/(2 - 2**(1/3)), 1/(2 - 2**(1/5))
+    four = nevh.Integrator("four", compose={"tao2": [a, 1 - 2*a, a]})
+    six = nevh.Integrator("six", compose={"tao4": [b, 1 - 2*b, b]})
+    wrong = nevh.Integrator("wrong", compose={"tao2": [a + 0.01, 0.98 - 2*a, a + 0.01]})
+    assert (four.order, six.order, wrong.order) == (4, 6, 2)
+    exact = nevh.solve(mixed, (0, 2), [1, 0.3], rtol=1e-14).y_reached
+
+    def error(method, dt):
+        return abs(nevh.solve(mixed, (0, 2), [1, 0.3], method, dt=dt).y_reached - exact).max()
+    assert abs(error(four, 0.02)/error("tao4", 0.02) - 1) < 1e-6
+    for method, order in ((four, 4), (six, 6), (wrong, 2)):
+        slope = np.log2(error(method, 0.02)/error(method, 0.01))
+        assert abs(slope - order) < 0.3, (method, slope)
+    assert list(nevh.compare(mixed, [four, "tao4"], 0.02, 2, y0=[1, 0.3])["symplectic"]) == [
+        "extended"]*2
+    assert pickle.loads(pickle.dumps(four)).order == 4
+
+
+def test_looks_are_those_of_the_command():
+    from nevh import _plot
+    for name in ("mine", "another", "heun-of-mine"):
+        own = nevh.Integrator(name, kick=[0.5, 0.5], drift=[1])
+        nevh.compare("pendulum", own, dt=[0.1, 0.05], t_end=5, plot="looks.svg")
+        with open("looks.svg", encoding="utf-8") as file:
+            colours = set(re.findall(r"#[0-9A-Fa-f]{6}", file.read()))
+        here = _plot.style(name)["color"]
+        assert here.lower() in {one.lower() for one in colours}, (name, here, colours)
+        others = set(_plot._colours) - {here, "#000000"}
+        assert not others & {one.upper() for one in colours}, colours
+    os.remove("looks.svg")
 
 
 def test_step_with_a_default():

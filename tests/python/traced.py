@@ -5,6 +5,8 @@ SPDX-License-Identifier: GPL-3.0-or-later
 """
 
 import abc
+import cmath
+import copy
 import functools
 import math
 import numbers
@@ -300,6 +302,115 @@ def test_kinds_of_arrays():
                 + np.linalg.norm(y[2:])**2)
     for H in (vectorized, lists, filled, pairs, selected):
         assert "[effects]" in scene_text(H, [0.3, 0.8, 0.1, 0.4]), H
+
+
+def same_values(H, start, **named):
+    """Whether the formula has the values of the function, its gradient that of
+    differences."""
+    scene = nevh.Scene(H, y0=start, **named)
+    draw = random.Random(7)
+    field = nevh.HGrad(scene, gradient="exact")
+    for _ in range(5):
+        y = [x + draw.uniform(-0.3, 0.3) for x in start]
+        slopes = field(0.0, np.array(y))
+        n, d = len(y) // 2, 1e-6
+        for k in range(2 * n):
+            ahead, behind = np.array(y), np.array(y)
+            ahead[k] += d
+            behind[k] -= d
+            slope = (H(0.0, ahead) - H(0.0, behind)) / (2 * d)
+            mine = -slopes[k + n] if k < n else slopes[k - n]
+            assert abs(slope - mine) < 1e-6 * (1 + abs(slope)), (H.__name__, k, slope, mine)
+    return scene
+
+
+def test_complex_numbers():
+    needs_numpy()
+
+    def planar(t, y):
+        z, w = y[0] + 1j * y[1], complex(y[2], y[3])
+        return abs(w)**2 / 2 + (z * z.conjugate()).real + 0.1 * (z**3).imag - 1 / abs(z - 3)
+
+    def lattice(t, y):
+        psi = (y[:3] + 1j * y[3:]) / np.sqrt(2)
+        hops = np.sum(psi.conj() * np.roll(psi, 1))
+        return np.sum(np.abs(psi)**4) - 2 * hops.real + np.vdot(psi, psi).real
+
+    def polar(t, y):
+        z = cmath.exp(1j * y[0]) * (2 + y[1]) / (1 + 1j * y[1])
+        return (y[2:] @ y[2:]) / 2 + cmath.phase(z)**2 + np.linalg.norm([z, 1 + 2j]) + \
+            np.angle(z) + cmath.sqrt(z).real + (z**-2).imag + np.real(z) * np.imag(z)
+    same_values(planar, [0.5, 0.4, 0.1, 0.3])
+    same_values(lattice, [0.5, 0.4, 0.1, 0.3, 0.2, -0.3])
+    same_values(polar, [0.5, 0.4, 0.1, 0.3])
+    for wrong, text in ((lambda t, y: y[1]**2 + (y[0] + 1j), "no real number"),
+                        (lambda t, y: y[1]**2 if y[0] + 1j == 2 else 0.0, "compares")):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # NumPy's, of the numbers themselves
+            raised((nevh.Refused, TypeError), text, nevh.Scene, wrong, y0=[0.5, 0.2])
+
+
+def test_more_of_numpy():
+    needs_numpy()
+
+    def sums(t, y):
+        q, p = y[:3], y[3:]
+        some = np.zeros(3)
+        np.add.at(some, [0, 0, 2], q)
+        return (np.einsum("...i,...i", p, p) / 2 + np.einsum(q, [0], q, [0], []) +
+                np.sum(q**4, where=[True, False, True]) + np.sum(q, initial=2.0) +
+                np.sum(np.outer(q, q), axis=(0, 1), keepdims=True)[0, 0] + some @ some +
+                np.nansum(q) + np.mean(np.outer(q, q), axis=(0, 1)) + np.prod(1 + q))
+
+    def matrices(t, y):
+        q, p = y[:2], y[2:]
+        M = np.array([[2 + q[0]**2, 0.3 * q[1]], [0.3 * q[1], 1.5]])
+        return (p @ p / 2 + np.linalg.eigvalsh(M)[0] + np.linalg.slogdet(M)[1] +
+                q @ np.linalg.matrix_power(M, 2) @ q + np.linalg.multi_dot([q, M, q]))
+
+    def elements(t, y):
+        q, p = y
+        assert np.isfinite(y).all() and not math.isnan(q)
+        q, p = copy.deepcopy([q, p])
+        return (p**2 / 2 + np.interp(q, [-9, 0, 0.3, 9], [5.0, 0.1, 1, 20]) + np.sinc(q) +
+                math.copysign(q**2, q) + math.fmod(q, 5.0) + np.copysign(p, q))
+    for H, start in ((sums, [0.5, 0.4, 0.1, 0.3, 0.2, -0.3]),
+                     (matrices, [0.5, 0.4, 0.1, 0.3]), (elements, [0.7, 0.4])):
+        same_values(H, start)
+    raised(nevh.Refused, "formulas have no numpy.linalg.eigh", nevh.Scene,
+           lambda t, y: y[1]**2 + np.linalg.eigh(np.array([[y[0], 1], [1, 2]]))[0][0],
+           y0=[1, 0])
+
+
+def test_names_are_those_of_the_function():
+    def unpacked(t, y):
+        r, phi, p_r, p_phi = y
+        return p_r**2 / 2 + p_phi**2 / (2 * r**2) - math.cos(phi)
+
+    def indexed(t, y):
+        theta = y[0]
+        return y[1]**2 / 2 - math.cos(theta)
+
+    def halves(t, y):
+        (x, z), (px, pz) = y[:2], y[2:]
+        return px**2 / 2 + pz**2 / 2 + x**2 * z
+
+    def clashes(t, y, x=1.0):
+        sin, p = y
+        return p**2 / 2 + x * sin**2
+
+    def partly(t, y):
+        a = y[0]
+        return (y[2]**2 + y[3]**2) / 2 + a * y[1]
+
+    def rows(t, x, p):
+        return sum(v**2 for v in p) / 2 + x[0]**2 * x[1]
+    for H, names in ((unpacked, ["r", "phi"]), (indexed, ["theta"]), (halves, ["x", "z"]),
+                     (clashes, ["q"]), (partly, ["q[1]", "q[2]"]), (rows, ["x[1]", "x[2]"])):
+        start = [1.0, 0.5] * len(names)
+        for _ in range(12):  # code that has run often is another
+            H(0.0, start[:2], start[2:]) if H is rows else H(0.0, start)
+        assert nevh.Scene(H, y0=start).names[:len(names)] == names, H.__name__
 
 
 def test_parameters_stay_parameters():

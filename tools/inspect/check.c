@@ -80,8 +80,11 @@ static void energy_notes(const plan *p, list *notes) {
 static void note_table(const nevh_integrator *scheme, list *notes) {
     nevh_scheme_facts x;
     char missing[300], kinetic[80] = "";
-    if (nevh_integrator_facts(scheme, &x))
+    if (nevh_integrator_facts(scheme, &x)) {
+        list_print(notes, "  %s: order %d, composed of steps of tao2",
+                   nevh_integrator_name(scheme), nevh_integrator_order(scheme));
         return;
+    }
     if (x.any_kinetic < x.order)
         snprintf(kinetic, sizeof kinetic, " (%d where T is not quadratic in p)",
                  x.any_kinetic);
