@@ -136,13 +136,16 @@ static int family_of(const nevh_integrator *scheme) {
         return 2;
     if (symplectic == NEVH_NO)
         return 5;
-    return nevh_integrator_needs(scheme) & NEVH_SEPARABLE ? 0 : 1;
+    return nevh_integrator_needs(scheme) & (NEVH_SEPARABLE | NEVH_PARTS) ? 0
+                                                                         : 1;
 }
 
 static const char *needs(const nevh_integrator *scheme) {
     unsigned needs = nevh_integrator_needs(scheme);
-    return needs & NEVH_QUADRATIC_KINETIC ? "H = T(p) + V(q), T quadratic in p"
-           : needs & NEVH_SEPARABLE       ? "H = T(p) + V(q)"
+    return needs & NEVH_PARTS ? "H = A + V(q), A a quadratic form"
+           : needs & NEVH_QUADRATIC_KINETIC
+               ? "H = T(p) + V(q), T quadratic in p"
+           : needs & NEVH_SEPARABLE                 ? "H = T(p) + V(q)"
            : nevh_integrator_needs_formulas(scheme) ? "H from formulas"
                                                     : "any H";
 }

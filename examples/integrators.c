@@ -29,9 +29,10 @@ static row describe(const nevh_integrator *scheme) {
     if (fixed || sweep)
         snprintf(r.cell[3], LONGEST, fixed ? "%d" : "%d a sweep",
                  fixed + sweep);
-    strcpy(r.cell[4], needs & NEVH_QUADRATIC_KINETIC ? "T(p) + V(q)*"
-                      : needs & NEVH_SEPARABLE       ? "T(p) + V(q)"
-                                                     : "any");
+    strcpy(r.cell[4], needs & NEVH_PARTS               ? "A + V(q)"
+                      : needs & NEVH_QUADRATIC_KINETIC ? "T(p) + V(q)*"
+                      : needs & NEVH_SEPARABLE         ? "T(p) + V(q)"
+                                                       : "any");
     for (int i = 0; i < 4; i++)
         strcpy(r.cell[5 + i], nevh_claim_name(claims[i]));
     strcpy(r.cell[9], nevh_integrator_own_time(scheme)   ? "its own"

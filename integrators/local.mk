@@ -13,6 +13,11 @@ libnevh_core_la_SOURCES += \
 	integrators/kernels/splitting_step.h \
 	integrators/kernels/splitting_expand.c \
 	integrators/kernels/splitting_kernel.c \
+	integrators/kernels/form_flow_private.h \
+	integrators/kernels/form_flow.c \
+	integrators/kernels/parts_kernel.c \
+	integrators/saba.c \
+	integrators/aba.c \
 	integrators/symplectic_euler.c \
 	integrators/verlet.c \
 	integrators/ruth3.c \

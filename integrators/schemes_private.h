@@ -27,6 +27,13 @@
     X(kahan_li8)                                                               \
     X(suzuki_umeno8)                                                           \
     X(sofroniou_spaletta10)                                                    \
+    X(wisdom_holman)                                                           \
+    X(saba2)                                                                   \
+    X(saba3)                                                                   \
+    X(saba4)                                                                   \
+    X(aba84)                                                                   \
+    X(aba864)                                                                  \
+    X(aba1064)                                                                 \
     X(midpoint)                                                                \
     X(gauss4)                                                                  \
     X(gauss6)                                                                  \

@@ -17,6 +17,8 @@ libnevh_core_la_SOURCES = \
 	lib/system/probe_private.h \
 	lib/system/probe.c \
 	lib/system/masses.c \
+	lib/system/parts_private.h \
+	lib/system/parts.c \
 	lib/system/kinetic.c \
 	lib/system/pairs.c \
 	lib/system/pairs_private.h \
@@ -289,6 +291,7 @@ libnevh_core_la_SOURCES = \
 	lib/scene/scene_exact.c \
 	lib/scene/elements_text.h \
 	lib/scene/scene_friction.c \
+	lib/scene/scene_parts.c \
 	lib/scene/scene_run.c \
 	lib/scene/scene_integrators.c \
 	lib/scene/velocity.c \

@@ -29,6 +29,7 @@ dist_scenes_DATA = \
 	scenes/pendulum-rotating.nevh \
 	scenes/pendulum-separatrix.nevh \
 	scenes/pendulum-small.nevh \
+	scenes/penning-trap.nevh \
 	scenes/pendulum.nevh \
 	scenes/sun-earth-moon.nevh
 

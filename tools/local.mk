@@ -100,6 +100,8 @@ tools_nevh_SOURCES = \
 	tools/ensemble/members.h \
 	tools/ensemble/members.c \
 	tools/inspect/check.c \
+	tools/inspect/parts_words.h \
+	tools/inspect/parts_words.c \
 	tools/inspect/chaos.c \
 	tools/orbit/section.c \
 	tools/inspect/impact_private.h \

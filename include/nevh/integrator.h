@@ -43,6 +43,18 @@ NEVH_API extern const nevh_integrator *const nevh_kahan_li6;
 NEVH_API extern const nevh_integrator *const nevh_kahan_li8;
 NEVH_API extern const nevh_integrator *const nevh_suzuki_umeno8;
 NEVH_API extern const nevh_integrator *const nevh_sofroniou_spaletta10;
+/* Explicit, by parts, for H = A + B where A, a quadratic form with constant
+   coefficients that has all momenta, is moved exactly and B = V(t, q) kicks.  With e
+   for the size of B beside A, errors are e h^2 (wisdom_holman), e h^4 ... e h^8 with
+   e^2 h^2 (saba2 ... saba4), e h^8 + e^2 h^4 (aba84), e h^8 + e^2 h^6 + e^3 h^4
+   (aba864), and e h^10 + e^2 h^6 + e^3 h^4 (aba1064). */
+NEVH_API extern const nevh_integrator *const nevh_wisdom_holman;
+NEVH_API extern const nevh_integrator *const nevh_saba2;
+NEVH_API extern const nevh_integrator *const nevh_saba3;
+NEVH_API extern const nevh_integrator *const nevh_saba4;
+NEVH_API extern const nevh_integrator *const nevh_aba84;
+NEVH_API extern const nevh_integrator *const nevh_aba864;
+NEVH_API extern const nevh_integrator *const nevh_aba1064;
 /* Implicit, for any H: Gauss-Legendre, named by order (twice the stages). */
 NEVH_API extern const nevh_integrator *const nevh_midpoint;
 NEVH_API extern const nevh_integrator *const nevh_gauss4;

@@ -91,6 +91,8 @@ enum nevh_trait {
     NEVH_AUTONOMOUS = 2,        /* H does not read t */
     NEVH_QUADRATIC_KINETIC = 4, /* T is quadratic in p; no declaration says so:
                                    where a scheme needs it, H is probed */
+    NEVH_PARTS = 8, /* a quadratic form with constant coefficients that has all
+                       momenta, and V(t, q); terms are probed, too */
 };
 
 typedef struct nevh_system nevh_system;
@@ -176,6 +178,29 @@ NEVH_API bool nevh_system_friction(const nevh_system *, double rates[]);
    sum non-separable here; nevh_system_probe looks into it.
    cost     one pass over the terms; thread-safe */
 NEVH_API unsigned nevh_system_traits(const nevh_system *);
+
+/* The part of H = A + B that an effect belongs to, for schemes by parts: A, fast, is
+   a quadratic form with constant coefficients; B = V(t, q) is slow. */
+typedef enum {
+    NEVH_BY_TERM, /* terms that are such forms are in A, others in B */
+    NEVH_FAST,    /* all its terms are in A */
+    NEVH_SLOW     /* all its terms are in B */
+} nevh_speed;
+/* Says so; the first is the default.  Steppers and fields made before refuse to go
+   on.
+   returns  NEVH_OK; NEVH_EINVAL when nothing has that effect, carried by the system
+            as after nevh_system_enable */
+NEVH_API int nevh_system_set_speed(nevh_system *, const char *effect,
+                                   nevh_speed);
+/* The parts of an effect that is on.
+   fast, slow  out, the instances of its terms in A and in B; may be NULL
+   term        out, may be NULL: the first term of any effect that belongs to neither
+               part, so that no scheme by parts fits; NULL: there is none
+   returns     NEVH_OK; NEVH_ESTRUCT where there is such a term, or A is empty;
+               NEVH_EINVAL when nothing has that effect; NEVH_ENOMEM
+   cost        a few gradients of each instance; thread-safe */
+NEVH_API int nevh_system_parts(const nevh_system *, const char *effect,
+                               size_t *fast, size_t *slow, const char **term);
 
 /* The separability that values of H alone show. */
 typedef struct {

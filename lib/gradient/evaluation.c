@@ -255,6 +255,25 @@ int nevh__field_gradient_padded(nevh_field *f, size_t width, size_t used,
     return nevh__field_terms(f, &at);
 }
 
+int nevh__field_whole_gradient(nevh_field *f, size_t width, const double t[],
+                               const double q[], const double p[],
+                               double dh_dq[], double dh_dp[]) {
+    bool any = false;
+    for (size_t i = 0; i < f->n_terms; i++) {
+        any |= f->terms[i].apart;
+        f->terms[i].apart = false;
+    }
+    int status = any ? nevh__field_ready(f) : NEVH_OK;
+    if (!any)
+        status = nevh_field_gradient(f, width, t, q, p, dh_dq, dh_dp);
+    else if (!status)
+        status =
+            nevh__field_terms(f, &(nevh__places){width, t, q, p, dh_dq, dh_dp});
+    for (size_t i = 0; any && i < f->n_terms; i++)
+        f->terms[i].apart = f->terms[i].fast;
+    return status;
+}
+
 int nevh_field_gradient(nevh_field *f, size_t width, const double t[],
                         const double q[], const double p[], double dh_dq[],
                         double dh_dp[]) {

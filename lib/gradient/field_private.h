@@ -38,6 +38,8 @@ typedef struct nevh__stencil nevh__stencil;
 typedef struct {
     const nevh__term_entry *term;
     size_t nq, np, nv;  /* variables of an instance: coordinates, momenta */
+    bool fast;          /* its flow is taken by the kernel, */
+    bool apart;         /* and gradients are without it */
     double *delta;      /* count x nv; NULL without differences */
     nevh__step *steps;  /* nevh__step_rows x nv */
     size_t first_step;  /* steps of the terms before it */
@@ -137,7 +139,7 @@ static inline size_t nevh__part_of(const nevh__places *at) {
 /* True if a term has a part in what is requested. */
 static inline bool nevh__wanted(const nevh__places *at,
                                 const nevh__planned *term) {
-    return (at->dh_dq && term->nq) || (at->dh_dp && term->np);
+    return !term->apart && ((at->dh_dq && term->nq) || (at->dh_dp && term->np));
 }
 
 /* The lane whose constants a state has, of so many side by side. */
@@ -192,6 +194,10 @@ int nevh__central_blocks(nevh_field *, nevh__planned *, const nevh__places *);
 int nevh__gradient_exact(nevh_field *, nevh__planned *, const nevh__places *);
 int nevh__gradient_complex(nevh_field *, nevh__planned *, const nevh__places *);
 
+/* As nevh_field_gradient, of all terms, also those that are apart. */
+int nevh__field_whole_gradient(nevh_field *, size_t width, const double t[],
+                               const double q[], const double p[],
+                               double dh_dq[], double dh_dp[]);
 /* Evaluates all terms, one after another, at any addresses. */
 int nevh__field_terms(nevh_field *, const nevh__places *);
 /* Plans differences, and exact gradients, at any addresses; false if memory is out. */
@@ -278,6 +284,10 @@ int nevh__field_time_slope(nevh_field *, size_t term, const nevh__time_step *,
                            size_t width, const double t[], const double q[],
                            const double p[], double dh_dt[]);
 
+/* As nevh_field_new.  fast: which terms of the system gradients are without; NULL:
+   none. */
+nevh_field *nevh__field_of(const nevh_system *, const nevh_options *,
+                           const bool fast[]);
 /* NEVH_OK, or why the field cannot be used (again). */
 int nevh__field_ready(nevh_field *);
 /* True if the field is planned, is not stale and has not failed. */

@@ -61,10 +61,11 @@ static int check_gradient(nevh_field *f, const nevh_term *term) {
                       term->name, term->effect, f->gradient->wants);
 }
 
-static int plan_term(nevh_field *f, const nevh__term_entry *term) {
+static int plan_term(nevh_field *f, const nevh__term_entry *term, bool fast) {
     const nevh_term *decl = &term->decl;
     nevh__planned *plan = &f->terms[f->n_terms++];
     *plan = (nevh__planned){.term = term,
+                            .fast = fast,
                             .nq = decl->nq,
                             .np = decl->np,
                             .nv = decl->nq + decl->np};
@@ -224,6 +225,15 @@ int nevh__field_forget(nevh_field *f, int status) {
     return status;
 }
 
+/* Planning was of all terms; no term has all of a half from here on. */
+static void set_apart(nevh_field *f) {
+    for (size_t i = 0; i < f->n_terms; i++)
+        if (f->terms[i].fast) {
+            f->terms[i].apart = true;
+            f->whole_q = f->whole_p = NULL;
+        }
+}
+
 static int plan_gradient(nevh_field *f, const nevh_options *o) {
     int status = NEVH_OK;
     if (f->gradient->offsets)
@@ -231,12 +241,13 @@ static int plan_gradient(nevh_field *f, const nevh_options *o) {
     else if (f->gradient == nevh_exact)
         status = nevh__field_verify(f, o);
     nevh__field_forget(f, status);
+    set_apart(f);
     if (!status && !nevh__single_plan(f))
         status = nevh__no_memory(&f->report);
     return status;
 }
 
-static int plan_field(nevh_field *f, const nevh_options *o) {
+static int plan_field(nevh_field *f, const nevh_options *o, const bool fast[]) {
     const nevh_system *s = f->system;
     if (s->report.status)
         return nevh__fail_as(&f->report, &s->report);
@@ -247,7 +258,7 @@ static int plan_field(nevh_field *f, const nevh_options *o) {
         f->scale[i] = choose_scale(o, f->n, i);
     for (size_t i = 0; !status && i < s->n_terms; i++)
         if (nevh__term_on(s, s->terms[i]))
-            status = plan_term(f, s->terms[i]);
+            status = plan_term(f, s->terms[i], fast && fast[i]);
     if (!status)
         status = plan_workspace(f);
     if (status)
@@ -261,6 +272,11 @@ static int plan_field(nevh_field *f, const nevh_options *o) {
 }
 
 nevh_field *nevh_field_new(const nevh_system *s, const nevh_options *options) {
+    return nevh__field_of(s, options, NULL);
+}
+
+nevh_field *nevh__field_of(const nevh_system *s, const nevh_options *options,
+                           const bool fast[]) {
     static const nevh_options defaults = {0};
     const nevh_options *o = options ? options : &defaults;
     bool fits = s && nevh__width_fits(s->report.status ? 0 : s->n, o->width);
@@ -275,7 +291,7 @@ nevh_field *nevh_field_new(const nevh_system *s, const nevh_options *options) {
     f->terms = nevh__array(s->n_terms, sizeof *f->terms);
     fenv_t own; /* as in nevh_stepper_new */
     feholdexcept(&own);
-    int status = f->terms ? plan_field(f, o) : NEVH_ENOMEM;
+    int status = f->terms ? plan_field(f, o, fast) : NEVH_ENOMEM;
     fesetenv(&own);
     if (status != NEVH_ENOMEM)
         return f;

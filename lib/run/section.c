@@ -1,6 +1,7 @@
 /* nevh: an observer that finds the points of sections.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/section_private.h"
+#include "gradient/field_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -160,7 +161,7 @@ static int begin(nevh_sections *x, double t, const double q[],
 static bool flow(nevh_sections *x, double t, const double q[],
                  const double p[]) {
     nevh_stepper *s = x->branch;
-    if (nevh_field_gradient(s->work.field, 1, &t, q, p, x->dp, x->dq))
+    if (nevh__field_whole_gradient(s->work.field, 1, &t, q, p, x->dp, x->dq))
         return false;
     for (size_t i = 0; i < s->work.n; i++)
         x->dp[i] = -x->dp[i] - (s->rates ? s->rates[i] * p[i] : 0);

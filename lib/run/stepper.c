@@ -42,7 +42,13 @@ static int plan_field(nevh_stepper *s) {
     nevh_work *w = &s->work;
     if (w->integrator->needs_formulas) /* it takes no gradient */
         s->options.gradient = nevh__best_gradient(w->system);
-    w->field = nevh_field_new(w->system, &s->options);
+    bool *apart = NULL;
+    int status = nevh__choose_parts(s, &apart);
+    if (!status)
+        w->field = nevh__field_of(w->system, &s->options, apart);
+    free(apart);
+    if (status)
+        return status;
     if (!w->field)
         return nevh__no_memory(&s->report);
     return w->field->report.status

@@ -40,6 +40,9 @@ nevh_stepper *nevh__stepper_watching(const nevh_system *,
                                      const nevh_integrator *,
                                      const nevh_options *,
                                      const nevh__watched *);
+/* For schemes by parts: chooses the terms whose flow is taken, one element a term of
+   the system; else NULL.  To be freed; a failure is recorded. */
+int nevh__choose_parts(nevh_stepper *, bool **apart);
 /* Why a scheme does not fit the system, or NEVH_OK. */
 int nevh__check_structure(nevh_stepper *);
 /* A step without looking whether the state is the one last returned. */

@@ -1,6 +1,7 @@
 /* nevh: does a scheme fit a Hamiltonian?
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/stepper_private.h"
+#include "system/parts_private.h"
 #include "system/probe_private.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -58,7 +59,7 @@ static int refuse_mixed(nevh_stepper *s, const nevh_separability *probe,
                         int status) {
     char fit[80];
     const nevh_integrator *scheme = s->work.integrator;
-    suggest(scheme, NEVH_SEPARABLE, fit, sizeof fit);
+    suggest(scheme, NEVH_SEPARABLE | NEVH_PARTS, fit, sizeof fit);
     if (status == NEVH_EDOM)
         return nevh__fail(&s->report, NEVH_ESTRUCT,
                           "%s needs H = T(p) + V(q), but term \"%s\", which "
@@ -79,7 +80,7 @@ static int refuse_kinetic(nevh_stepper *s, const nevh__kinetic *probe,
                           int status) {
     char fit[80];
     const nevh_integrator *scheme = s->work.integrator;
-    suggest(scheme, NEVH_QUADRATIC_KINETIC, fit, sizeof fit);
+    suggest(scheme, NEVH_QUADRATIC_KINETIC | NEVH_PARTS, fit, sizeof fit);
     if (status == NEVH_EDOM)
         return nevh__fail(&s->report, NEVH_ESTRUCT,
                           "%s needs a T quadratic in p, but term \"%s\", which "
@@ -95,6 +96,41 @@ static int refuse_kinetic(nevh_stepper *s, const nevh__kinetic *probe,
                       scheme->name, probe->term, probe->third,
                       scheme->symmetric == NEVH_YES ? 4 : 3, scheme->order,
                       fit);
+}
+
+static int refuse_parts(nevh_stepper *s, const nevh__parts_fault *fault) {
+    char fit[80];
+    const nevh_integrator *scheme = s->work.integrator;
+    bool mixed = !(nevh_system_traits(s->work.system) & NEVH_SEPARABLE);
+    suggest(scheme,
+            NEVH_PARTS | NEVH_QUADRATIC_KINETIC | (mixed ? NEVH_SEPARABLE : 0),
+            fit, sizeof fit);
+    if (!fault->term)
+        return nevh__fail(&s->report, NEVH_ESTRUCT,
+                          "%s moves a quadratic form with constant "
+                          "coefficients exactly, but no term is one; schemes "
+                          "that fit: %s",
+                          scheme->name, fit);
+    return nevh__fail(&s->report, NEVH_ESTRUCT,
+                      "%s needs H = A + V(q), where A is a quadratic form with "
+                      "constant coefficients, but term \"%s\" of effect "
+                      "\"%s\" %s; schemes that fit: %s",
+                      scheme->name, fault->term->name, fault->term->effect,
+                      fault->reason, fit);
+}
+
+int nevh__choose_parts(nevh_stepper *s, bool **apart) {
+    const nevh_work *w = &s->work;
+    nevh__parts_fault fault;
+    *apart = NULL;
+    if (!(w->integrator->needs & NEVH_PARTS))
+        return NEVH_OK;
+    *apart = nevh__array(w->system->n_terms, sizeof **apart);
+    int status =
+        *apart ? nevh__parts_find(w->system, *apart, &fault) : NEVH_ENOMEM;
+    if (status == NEVH_ENOMEM)
+        return nevh__no_memory(&s->report);
+    return status ? refuse_parts(s, &fault) : NEVH_OK;
 }
 
 static int check_separable(nevh_stepper *s, const double q[],

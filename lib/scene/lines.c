@@ -6,7 +6,7 @@
 static const char *const section_names[NEVH__SECTION_COUNT] = {
     "scene",    "parameters", "coordinates", "definitions", "effects",
     "friction", "invariants", "observables", "picture",     "sections",
-    "labels",   "ensemble",   "run",         "integrator"};
+    "labels",   "parts",      "ensemble",    "run",         "integrator"};
 
 static size_t line_bytes(const char *text, size_t left) {
     const char *end = memchr(text, '\n', left);

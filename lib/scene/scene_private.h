@@ -36,6 +36,7 @@ typedef enum {
     NEVH__PICTURE,
     NEVH__SECTIONS,
     NEVH__LABELS,
+    NEVH__SPEEDS,
     NEVH__ENSEMBLE,
     NEVH__RUN,
     NEVH__INTEGRATOR,
@@ -124,6 +125,8 @@ typedef struct {
     bool *by_velocity;              /* n: v[k] is given, p[k] follows */
     nevh_system *system, *transform;
     nevh__owned owned, owned_transform;
+    const nevh__piece *fast; /* effects of [parts]; NULL: none */
+    size_t n_fast;
     nevh_scene_run run;
     nevh__items shown[2]; /* by nevh_shown */
     nevh__crossing *crossings;
@@ -281,6 +284,7 @@ bool nevh__model_definitions(nevh_scene *, nevh__scene_model *);
 bool nevh__model_values(nevh_scene *, nevh__scene_model *);
 bool nevh__model_terms(nevh_scene *, nevh__scene_model *);
 bool nevh__model_friction(nevh_scene *, nevh__scene_model *);
+bool nevh__model_parts(nevh_scene *, nevh__scene_model *);
 bool nevh__model_shown(nevh_scene *, nevh__scene_model *); /* and monitored */
 bool nevh__model_crossings(nevh_scene *, nevh__scene_model *);
 bool nevh__model_labels(nevh_scene *, nevh__scene_model *);

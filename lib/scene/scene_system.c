@@ -127,7 +127,7 @@ bool nevh__model_terms(nevh_scene *s, nevh__scene_model *m) {
         return nevh__scene_no_memory(s);
     m->system->names = (const char *const *)m->coordinate_names;
     if (!nevh__scene_each(s, m, NEVH__EFFECTS, add_terms) ||
-        !nevh__model_friction(s, m))
+        !nevh__model_friction(s, m) || !nevh__model_parts(s, m))
         return false;
     for (size_t i = 0; i < s->n_effects; i++)
         nevh_system_enable(m->system, s->effects[i].name, s->effects[i].on);

@@ -206,6 +206,19 @@ int nevh_system_enable(nevh_system *s, const char *name, bool on) {
     return NEVH_OK;
 }
 
+int nevh_system_set_speed(nevh_system *s, const char *name, nevh_speed speed) {
+    if (nevh_system_status(s))
+        return nevh_system_status(s);
+    nevh__effect *effect = effect_named(s, name);
+    if (!effect)
+        return nevh__fail(&s->report, NEVH_EINVAL, "there is no effect \"%s\"",
+                          name ? name : "");
+    if (effect->speed != speed)
+        s->revision++;
+    effect->speed = speed;
+    return NEVH_OK;
+}
+
 nevh_system *nevh_system_new(size_t n) {
     nevh_system *s = nevh__array(1, sizeof *s);
     if (!s)

@@ -89,6 +89,7 @@ typedef struct {
     char *name;
     size_t number; /* of the last term that was named after it; 0: none */
     bool on;
+    nevh_speed speed;
 } nevh__effect;
 
 typedef struct {

@@ -83,4 +83,11 @@ looks = (
     "gsl-rkf45",
     "gsl-rk8pd",
     "gsl-msadams",
+    "aba864",
+    "wisdom-holman",
+    "saba2",
+    "saba3",
+    "saba4",
+    "aba84",
+    "aba1064",
 )

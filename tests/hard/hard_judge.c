@@ -98,6 +98,7 @@ static bool refuses_rightly(const hard_subject *s, const hard_result *r) {
         return true;
     return (needs && is(s, HARD_MIXED | HARD_NOISE)) ||
            (needs & NEVH_QUADRATIC_KINETIC && is(s, HARD_MIXED)) ||
+           (needs & NEVH_PARTS && is(s, HARD_BLACK_BOX)) ||
            (nevh_integrator_own_time(r->scheme) && s->balance);
 }
 

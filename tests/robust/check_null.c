@@ -281,6 +281,8 @@ static nevh_separability separability;
     X(STATUS, nevh_system_add_masses, (NULL, "x", in))                         \
     X(STATUS, nevh_system_add_friction, (NULL, "x", in))                       \
     X(STATUS, nevh_system_enable, (NULL, "x", true))                           \
+    X(STATUS, nevh_system_set_speed, (NULL, "x", NEVH_SLOW))                   \
+    X(STATUS, nevh_system_parts, (NULL, "x", NULL, NULL, NULL))                \
     X(STATUS, nevh_system_status, (NULL))                                      \
     X(TEXT, nevh_system_message, (NULL))                                       \
     X(NUMBER, nevh_system_dof, (NULL))                                         \

@@ -250,8 +250,8 @@ static void assert_alike(int which, int friction, bool transformed,
         double x[MOST_SIZE], y[MOST_SIZE];
         int status = arrive(a, scheme, transform, STEPS, x);
         ck_assert_int_eq(status, arrive(b, scheme, transform, STEPS, y));
-        if (status)
-            continue;
+        if (status || nevh_integrator_needs(scheme) & NEVH_PARTS)
+            continue; /* the parts depend on how H is divided into terms */
         double gap = largest_gap(x, y, 2 * nevh_scene_dof(a));
         ck_assert_msg(gap <= rounding(scheme), "%s on problem %d: %.1e",
                       nevh_integrator_name(scheme), which, gap);

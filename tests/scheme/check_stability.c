@@ -71,8 +71,25 @@ static double oscillator(double t, const double q[], const double p[],
     return p[0] * p[0] / (2 * mass) + spring * q[0] * q[0] / 2;
 }
 
+static double oscillator_term(double t, const double q[], const double p[],
+                              const double c[], const void *params) {
+    (void)c;
+    return oscillator(t, q, p, params);
+}
+
+/* One function of all may read the time, too, and has no parts. */
+static nevh_system *new_oscillator(const nevh_integrator *scheme) {
+    if (!(nevh_integrator_needs(scheme) & NEVH_PARTS))
+        return nevh_system_from(1, oscillator, NULL);
+    nevh_system *s = nevh_system_new(1);
+    nevh_system_add(
+        s, &(nevh_term){
+               .effect = "H", .nq = 1, .np = 1, .value = oscillator_term});
+    return s;
+}
+
 static double largest_after(const nevh_integrator *scheme, double x) {
-    nevh_system *s = nevh_system_from(1, oscillator, NULL);
+    nevh_system *s = new_oscillator(scheme);
     nevh_options o = {.gradient_step = 0x1p-3};
     nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
     double q = 1, p = 0.3, most = 0, h = x / sqrt(spring / mass);

@@ -19,7 +19,8 @@ int order_on(const problem *b, const nevh_integrator *scheme) {
 bool fits(const nevh_integrator *scheme, const problem *b) {
     unsigned needs = nevh_integrator_needs(scheme);
     return (b->separable || !(needs & NEVH_SEPARABLE)) &&
-           (b->quadratic || !(needs & NEVH_QUADRATIC_KINETIC));
+           (b->quadratic || !(needs & NEVH_QUADRATIC_KINETIC)) &&
+           ((b->separable && b->quadratic) || !(needs & NEVH_PARTS));
 }
 
 double tolerance_for(const nevh_integrator *scheme) {

@@ -7,6 +7,8 @@
 
 static const char *fits(const nevh_integrator *s) {
     unsigned needs = nevh_integrator_needs(s);
+    if (needs & NEVH_PARTS)
+        return "A + V(q), A a form";
     if (needs & NEVH_QUADRATIC_KINETIC)
         return "T(p) + V(q), T quadratic";
     if (needs & NEVH_SEPARABLE)

@@ -3,6 +3,7 @@
 #include "cli/commands.h"
 #include "experiment/conserved.h"
 #include "experiment/trial_run.h"
+#include "parts_words.h"
 #include <math.h>
 #include <nevh/extend.h>
 #include <stdio.h>
@@ -171,7 +172,8 @@ static void add_trial_run(const plan *p, const nevh_integrator *scheme,
         table_shown(t, "%.3g", x);
     else
         table_text(t, NULL);
-    char *text = fits ? prediction(p, scheme, ahead, limit) : NULL;
+    bool exact = nevh_integrator_needs(scheme) & NEVH_PARTS; /* at any step */
+    char *text = fits && !exact ? prediction(p, scheme, ahead, limit) : NULL;
     table_text(t, text);
     free(text);
 }
@@ -293,6 +295,7 @@ static int check_plan(const options *o, const plan *p) {
         ahead.rough = probe_notes(p, &result.before) == SMOOTHNESS_NONE;
         trial_run_words(p, &ahead, &result.before);
         conserved_words(p, &result.before);
+        parts_words(p, &result.before);
         note_tables(p, &result.before);
     }
     add_schemes(&(fitting){.plan = p,

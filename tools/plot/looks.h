@@ -92,6 +92,13 @@
     X("dprkn12")                                                               \
     X("gsl-rkf45")                                                             \
     X("gsl-rk8pd")                                                             \
-    X("gsl-msadams")
+    X("gsl-msadams")                                                           \
+    X("aba864")                                                                \
+    X("wisdom-holman")                                                         \
+    X("saba2")                                                                 \
+    X("saba3")                                                                 \
+    X("saba4")                                                                 \
+    X("aba84")                                                                 \
+    X("aba1064")
 
 #endif

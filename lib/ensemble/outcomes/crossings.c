@@ -5,6 +5,7 @@
    may meet a level within the step, it searches as it does for one.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "ensemble/ensemble_private.h"
+#include "gradient/field_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -149,8 +150,8 @@ static void flow_of_lane(nevh_ensemble *e, size_t lane, double t,
         e->q1[k] = q[k * e->stride + lane];
         e->p1[k] = p[k * e->stride + lane];
     }
-    int status = nevh_field_gradient(e->narrow->work.field, 1, &t, e->q1, e->p1,
-                                     force, v);
+    int status = nevh__field_whole_gradient(e->narrow->work.field, 1, &t, e->q1,
+                                            e->p1, force, v);
     for (size_t k = 0; k < e->n; k++) {
         c->dq[k * e->stride + lane] = status ? NAN : v[k];
         c->dp[k * e->stride + lane] = status ? NAN : force[k];
@@ -161,8 +162,8 @@ static void find_flow(nevh_ensemble *e, const double t[], const double q[],
                       const double p[]) {
     nevh__crossing_lanes *c = e->crossing_lanes;
     const double *rates = e->narrow->rates;
-    if (nevh_field_gradient(e->narrow->work.field, e->stride, t, q, p, c->dp,
-                            c->dq))
+    if (nevh__field_whole_gradient(e->narrow->work.field, e->stride, t, q, p,
+                                   c->dp, c->dq))
         for (size_t lane = 0; lane < e->width; lane++)
             flow_of_lane(e, lane, t[lane], q, p);
     for (size_t i = 0; i < e->n * e->stride; i++)

@@ -1,0 +1,398 @@
+/* nevh: the flow of a quadratic form.
+
+   dz/dt = J (K z + g) has the flow z + D(t) (z, 1) with D(t) = exp(t a) - 1, where
+   a is the matrix J (K, g) with a row of zeros for the 1.  D is a Taylor series
+   over t / 2^k, and D(2 t) = 2 D(t) + D(t)^2 [C. Moler, C. Van Loan, Nineteen
+   dubious ways to compute the exponential of a matrix, twenty-five years later,
+   SIAM Rev. 45 (2003) 3-49, method 3], in long double with momenta in units in
+   which both halves of K are about as large.  Elements are kept in two doubles,
+   since a rounding of D is the same in each step, and energies of the form would
+   drift by it.
+
+   Variables of a block stand as q, p of one coordinate after the other, so that
+   chains have banded matrices: elements below the last digits are left out.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "form_flow_private.h"
+#include "gradient/field_private.h"
+#include "system/parts_private.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_BLOCK = 128, SETS = 2, TERMS = 18, MOST_HALVINGS = 200 };
+
+/* Some coordinates and their momenta: m = 2 count variables. */
+typedef struct {
+    size_t count;
+    const size_t *index; /* coordinates of the system */
+    long double *a;      /* m x (m + 1), by rows: dz/dt = a (z, 1) */
+    int *units;          /* m: powers of two */
+    size_t at;           /* of its elements in a set */
+} block;
+
+/* Element by element in columns: (row, column) of D at column * m + row. */
+typedef struct {
+    double h;
+    bool made;
+    double *high, *low;
+    size_t *first, *last; /* rows of each column that are not 0 */
+} set;
+
+struct nevh__form_flow {
+    size_t n, n_blocks, n_times, size, columns; /* of a set for one time */
+    block *blocks;
+    size_t *index;
+    long double *a, *room; /* all a; three matrices of the largest block */
+    int *units;
+    double *times;
+    set sets[SETS];
+    size_t now; /* the set in use */
+};
+
+void nevh__form_flow_free(nevh__form_flow *f) {
+    if (!f)
+        return;
+    for (size_t i = 0; i < SETS; i++) {
+        free(f->sets[i].high);
+        free(f->sets[i].low);
+        free(f->sets[i].first);
+        free(f->sets[i].last);
+    }
+    free(f->blocks);
+    free(f->index);
+    free(f->a);
+    free(f->room);
+    free(f->units);
+    free(f->times);
+    free(f);
+}
+
+/* Entries of K and g are handed to `visit`: variables are numbered from 0 to 2n,
+   coordinates first; column 2n is g. */
+typedef void (*entry_fn)(void *, size_t row, size_t column, double value);
+
+static void visit_instance(const nevh_field *f, const nevh__planned *term,
+                           size_t instance, double *room, entry_fn visit,
+                           void *data) {
+    size_t nv = term->nv;
+    double *form = room + nevh__form_room(&term->term->decl);
+    nevh__form_find(term->term, instance, form, room);
+    for (size_t i = 0; i < nv; i++)
+        for (size_t j = 0; j <= nv; j++) {
+            size_t row = nevh__index(term, instance, i);
+            size_t column = j < nv ? nevh__index(term, instance, j) : 0;
+            row += i < term->nq ? 0 : f->n;
+            column += j < term->nq ? 0 : j < nv ? f->n : 2 * f->n;
+            visit(data, row, column, form[i * (nv + 1) + j]);
+        }
+}
+
+static bool visit_entries(const nevh_field *f, entry_fn visit, void *data) {
+    for (size_t i = 0; i < f->n_terms; i++) {
+        const nevh__planned *term = &f->terms[i];
+        size_t form = term->nv * (term->nv + 1);
+        size_t room = nevh__form_room(&term->term->decl) + form;
+        double *own = term->fast ? nevh__array(room, sizeof *own) : NULL;
+        if (term->fast && !own)
+            return false;
+        for (size_t k = 0; term->fast && k < term->term->decl.count; k++)
+            visit_instance(f, term, k, own, visit, data);
+        free(own);
+    }
+    return true;
+}
+
+/* Coordinates that are connected have one root. */
+typedef struct {
+    size_t n, *up;
+} forest;
+
+static size_t root(const forest *x, size_t i) {
+    while (x->up[i] != i)
+        i = x->up[i] = x->up[x->up[i]];
+    return i;
+}
+
+static void connect(void *data, size_t row, size_t column, double value) {
+    forest *x = data;
+    if (value == 0 || column == 2 * x->n)
+        return;
+    size_t i = root(x, row % x->n), j = root(x, column % x->n);
+    x->up[i > j ? i : j] = i > j ? j : i;
+}
+
+/* Places of coordinates: `block` of each, and which of its coordinates it is. */
+typedef struct {
+    nevh__form_flow *flow;
+    size_t *block, *place;
+} map;
+
+static void put_entry(void *data, size_t row, size_t column, double value) {
+    const map *x = data;
+    size_t n = x->flow->n, k = row % n;
+    block *b = &x->flow->blocks[x->block[k]];
+    size_t m = 2 * b->count, to = 2 * x->place[k] + (row < n ? 1 : 0);
+    size_t from =
+        column == 2 * n ? m : 2 * x->place[column % n] + (column < n ? 0 : 1);
+    if (value != 0)
+        b->a[to * (m + 1) + from] += row < n ? -value : value;
+}
+
+/* The powers of two by which momenta of a block are divided. */
+static void choose_units(block *b) {
+    size_t m = 2 * b->count;
+    for (size_t k = 0; k < b->count; k++) {
+        long double drift = 0, kick = 0;
+        for (size_t j = 0; j < b->count; j++) {
+            drift = fmaxl(drift, fabsl(b->a[2 * k * (m + 1) + 2 * j + 1]));
+            kick = fmaxl(kick, fabsl(b->a[(2 * k + 1) * (m + 1) + 2 * j]));
+        }
+        bool both = drift > 0 && kick > 0;
+        b->units[2 * k + 1] = both ? ilogbl(kick / drift) / 2 : 0;
+    }
+    for (size_t i = 0; i < m; i++)
+        for (size_t j = 0; j <= m; j++) {
+            long double *x = &b->a[i * (m + 1) + j];
+            *x = ldexpl(*x, (j < m ? b->units[j] : 0) - b->units[i]);
+        }
+}
+
+static bool plan_blocks(nevh__form_flow *f, map *x, const forest *trees) {
+    size_t elements = 0, most = 0;
+    for (size_t k = 0; k < f->n; k++)
+        if (root(trees, k) == k)
+            x->block[k] = f->n_blocks++;
+    f->blocks = nevh__array(f->n_blocks, sizeof *f->blocks);
+    if (!f->blocks)
+        return false;
+    for (size_t k = 0; k < f->n; k++) {
+        x->block[k] = x->block[root(trees, k)];
+        x->place[k] = f->blocks[x->block[k]].count++;
+    }
+    const size_t *index = f->index;
+    for (block *b = f->blocks; b < f->blocks + f->n_blocks; b++) {
+        size_t m = 2 * b->count;
+        b->index = index;
+        index += b->count;
+        b->at = elements;
+        elements += m * (m + 1);
+        most = m > most ? m : most;
+    }
+    for (size_t k = 0; k < f->n; k++) {
+        const block *b = &f->blocks[x->block[k]];
+        f->index[(size_t)(b->index - f->index) + x->place[k]] = k;
+    }
+    f->size = elements;
+    f->columns = 2 * f->n + f->n_blocks;
+    if (most > 2 * MOST_BLOCK)
+        return true;
+    f->a = nevh__array(elements, sizeof *f->a);
+    f->units = nevh__array(2 * f->n, sizeof *f->units);
+    f->room = nevh__array(3 * most * (most + 1), sizeof *f->room);
+    for (size_t i = 0, k = 0; f->a && f->units && i < f->n_blocks; i++) {
+        f->blocks[i].a = f->a + f->blocks[i].at;
+        f->blocks[i].units = f->units + k;
+        k += 2 * f->blocks[i].count;
+    }
+    return f->a && f->units && f->room;
+}
+
+static bool plan_sets(nevh__form_flow *f) {
+    bool all = true;
+    for (set *x = f->sets; x < f->sets + SETS; x++) {
+        size_t size = f->n_times * f->size, columns = f->n_times * f->columns;
+        x->high = nevh__array(size, sizeof *x->high);
+        x->low = nevh__array(size, sizeof *x->low);
+        x->first = nevh__array(columns, sizeof *x->first);
+        x->last = nevh__array(columns, sizeof *x->last);
+        all = all && x->high && x->low && x->first && x->last;
+    }
+    return all;
+}
+
+static size_t largest_block(const nevh__form_flow *f) {
+    size_t most = 0;
+    for (size_t i = 0; i < f->n_blocks; i++)
+        most = f->blocks[i].count > most ? f->blocks[i].count : most;
+    return most;
+}
+
+static bool plan_flow(nevh__form_flow *f, const nevh_field *field) {
+    forest trees = {f->n, nevh__array(f->n, sizeof *trees.up)};
+    map x = {f, nevh__array(f->n, sizeof *x.block),
+             nevh__array(f->n, sizeof *x.place)};
+    f->index = nevh__array(f->n, sizeof *f->index);
+    bool fine = trees.up && x.block && x.place && f->index;
+    for (size_t k = 0; fine && k < f->n; k++)
+        trees.up[k] = k;
+    fine = fine && visit_entries(field, connect, &trees) &&
+           plan_blocks(f, &x, &trees);
+    if (fine && f->a) {
+        fine = visit_entries(field, put_entry, &x) && plan_sets(f);
+        for (size_t i = 0; fine && i < f->n_blocks; i++)
+            choose_units(&f->blocks[i]);
+    }
+    free(trees.up);
+    free(x.block);
+    free(x.place);
+    return fine;
+}
+
+nevh__form_flow *nevh__form_flow_new(nevh_work *w, size_t count,
+                                     const double times[]) {
+    nevh__form_flow *f = nevh__array(1, sizeof *f);
+    if (f) {
+        f->n = w->n;
+        f->n_times = count;
+        f->times = nevh__copy(times, count, sizeof *times);
+    }
+    if (!f || !f->times || !plan_flow(f, w->field)) {
+        nevh__form_flow_free(f);
+        nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+        return NULL;
+    }
+    if (f->a)
+        return f;
+    nevh_work_fail(w, NEVH_ESTRUCT,
+                   "%s moves connected coordinates by one matrix of at most %d "
+                   "of them, but the form connects %zu",
+                   w->integrator->name, MOST_BLOCK, largest_block(f));
+    nevh__form_flow_free(f);
+    return NULL;
+}
+
+/* product = x y, all m x (m + 1), the row below being 0. */
+static void multiply(size_t m, const long double x[], const long double y[],
+                     long double product[]) {
+    size_t row = m + 1;
+    memset(product, 0, m * row * sizeof *product);
+    for (size_t i = 0; i < m; i++)
+        for (size_t k = 0; k < m; k++) {
+            long double factor = x[i * row + k];
+            for (size_t j = 0; factor != 0 && j <= m; j++)
+                product[i * row + j] += factor * y[k * row + j];
+        }
+}
+
+static long double norm(size_t m, const long double x[]) {
+    long double most = 0;
+    for (size_t i = 0; i < m; i++) {
+        long double sum = 0;
+        for (size_t j = 0; j < m; j++)
+            sum += fabsl(x[i * (m + 1) + j]);
+        most = fmaxl(most, sum);
+    }
+    return most;
+}
+
+/* exp(t a) - 1 to room; returns it. */
+static const long double *exponential(const block *b, double t,
+                                      long double *room) {
+    size_t m = 2 * b->count, size = m * (m + 1);
+    long double *x = room, *sum = x + size, *product = sum + size;
+    int halvings = 0;
+    long double length = norm(m, b->a) * fabsl(t);
+    for (; length > 0.5L && halvings < MOST_HALVINGS; halvings++)
+        length /= 2;
+    for (size_t i = 0; i < size; i++) {
+        x[i] = length <= 0.5L ? ldexpl(b->a[i] * t, -halvings) : NAN;
+        sum[i] = x[i] / TERMS;
+    }
+    for (int k = TERMS - 1; k > 0; k--) {
+        multiply(m, x, sum, product);
+        for (size_t i = 0; i < size; i++)
+            sum[i] = (x[i] + product[i]) / k;
+    }
+    for (; halvings; halvings--) {
+        multiply(m, sum, sum, product);
+        for (size_t i = 0; i < size; i++)
+            sum[i] = 2 * sum[i] + product[i];
+    }
+    return sum;
+}
+
+/* The matrix to a set, without what is below the last digits of its row. */
+static void store(const block *b, const long double d[], double high[],
+                  double low[], size_t first[], size_t last[]) {
+    size_t m = 2 * b->count;
+    for (size_t j = 0; j <= m; j++)
+        first[j] = last[j] = 0;
+    for (size_t i = 0; i < m; i++) {
+        const long double *row = d + i * (m + 1);
+        long double most = 0;
+        for (size_t j = 0; j < m; j++)
+            most = fmaxl(most, fabsl(row[j]));
+        for (size_t j = 0; j <= m; j++) {
+            bool counts =
+                j == m ? row[j] != 0 : fabsl(row[j]) > most * 0x1p-64L;
+            int unit = b->units[i] - (j < m ? b->units[j] : 0);
+            long double x = counts ? ldexpl(row[j], unit) : 0;
+            high[j * m + i] = (double)x;
+            low[j * m + i] = (double)(x - (double)x);
+            first[j] = counts && !last[j] ? i : first[j];
+            last[j] = counts ? i + 1 : last[j];
+        }
+    }
+}
+
+void nevh__form_flow_set(nevh__form_flow *f, double h) {
+    for (size_t i = 0; i < SETS; i++)
+        if (f->sets[i].made && f->sets[i].h == h) {
+            f->now = i;
+            return;
+        }
+    f->now = (f->now + 1) % SETS;
+    set *x = &f->sets[f->now];
+    x->h = h;
+    x->made = true;
+    for (size_t t = 0; t < f->n_times; t++)
+        for (size_t i = 0, column = t * f->columns; i < f->n_blocks; i++) {
+            const block *b = &f->blocks[i];
+            size_t at = t * f->size + b->at;
+            store(b, exponential(b, f->times[t] * h, f->room), x->high + at,
+                  x->low + at, x->first + column, x->last + column);
+            column += 2 * b->count + 1;
+        }
+}
+
+/* One block, of orbits `width` apart.  high: room for m sums, and low. */
+NEVH__INLINE void add_block(const block *b, const double *d_high,
+                            const double *d_low, const size_t *first,
+                            const size_t *last, size_t width, const double q[],
+                            const double p[], double dq[], double dp[],
+                            double *high, double *low) {
+    size_t m = 2 * b->count;
+    for (size_t i = 0; i < m; i++)
+        high[i] = low[i] = 0;
+    for (size_t j = 0; j <= m; j++) {
+        double z = j == m ? 1 : (j % 2 ? p : q)[b->index[j / 2] * width];
+        const double *column_high = d_high + j * m, *column_low = d_low + j * m;
+        for (size_t i = first[j]; i < last[j]; i++) {
+            high[i] += column_high[i] * z;
+            low[i] += column_low[i] * z;
+        }
+    }
+    for (size_t k = 0; k < b->count; k++) {
+        size_t at = b->index[k] * width;
+        dq[at] += high[2 * k] + low[2 * k];
+        dp[at] += high[2 * k + 1] + low[2 * k + 1];
+    }
+}
+
+NEVH_SIMD void nevh__form_flow_add(const nevh__form_flow *f, size_t which,
+                                   size_t width, const double q[],
+                                   const double p[], double dq[], double dp[]) {
+    const set *x = &f->sets[f->now];
+    double high[2 * MOST_BLOCK], low[2 * MOST_BLOCK];
+    for (size_t lane = 0; lane < width; lane++) {
+        size_t column = which * f->columns;
+        for (const block *b = f->blocks; b < f->blocks + f->n_blocks; b++) {
+            size_t at = which * f->size + b->at;
+            add_block(b, x->high + at, x->low + at, x->first + column,
+                      x->last + column, width, q + lane, p + lane, dq + lane,
+                      dp + lane, high, low);
+            column += 2 * b->count + 1;
+        }
+    }
+}

@@ -1,0 +1,30 @@
+/* nevh: the kernel of steps by parts, H = A + B, and the flow of A.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_FORM_FLOW_PRIVATE_H
+#define NEVH_FORM_FLOW_PRIVATE_H
+
+#include <nevh/extend.h>
+
+/* The table is a nevh_splitting that begins with a drift: its drifts are flows of
+   A, its kicks those of B = V(t, q). */
+extern const nevh_kernel nevh__parts_kernel;
+
+/* The flow of A = z' K z / 2 + g' z, by the matrix exponential of each block of
+   variables that K connects. */
+typedef struct nevh__form_flow nevh__form_flow;
+/* apart    the terms of A in the field of w, which planning has marked
+   times    parts of a step over which the flow is taken, count of them
+   returns  NULL, with a failure recorded, where memory is out or a block is too
+            large */
+nevh__form_flow *nevh__form_flow_new(nevh_work *w, size_t count,
+                                     const double times[]);
+void nevh__form_flow_free(nevh__form_flow *); /* NULL is allowed */
+/* Makes the matrices for steps of h, unless these are there. */
+void nevh__form_flow_set(nevh__form_flow *, double h);
+/* Adds to dz what the flow over part `which` of the step adds to the states q, p,
+   n x width each. */
+void nevh__form_flow_add(const nevh__form_flow *, size_t which, size_t width,
+                         const double q[], const double p[], double dq[],
+                         double dp[]);
+
+#endif

@@ -1,0 +1,211 @@
+/* nevh: which terms are quadratic forms with constant coefficients?
+
+   Asked of the derivatives that a term brings, or of differences of its values,
+   which are exact for such a form.  Those at unit vectors give the coefficients;
+   at other states, near and far, the derivatives have to be the linear functions
+   that follow.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "system/parts_private.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { TRIALS = 4 }; /* of eight states each */
+static const double roundings = 256;
+
+/* Rows of eight states of an instance. */
+typedef struct {
+    const nevh__term_entry *term;
+    size_t nv;
+    double *z, *c, *slope;        /* nv, nc and nv rows */
+    double *beside, *t, *h, *one; /* nv rows, two rows, nv + nc numbers */
+} trial;
+
+size_t nevh__form_room(const nevh_term *decl) {
+    size_t nv = decl->nq + decl->np;
+    return NEVH__LANES * (3 * nv + decl->nc + 2) + nv + decl->nc;
+}
+
+static trial lay_out(const nevh__term_entry *term, size_t instance,
+                     double *room) {
+    const nevh_term *decl = &term->decl;
+    trial x = {.term = term, .nv = decl->nq + decl->np};
+    size_t size = NEVH__LANES * x.nv;
+    x.z = nevh__take(&room, size);
+    x.c = nevh__take(&room, NEVH__LANES * decl->nc);
+    x.slope = nevh__take(&room, size);
+    x.beside = nevh__take(&room, size);
+    x.t = nevh__take(&room, NEVH__LANES);
+    x.h = nevh__take(&room, NEVH__LANES);
+    x.one = room;
+    for (size_t k = 0; k < NEVH__LANES * decl->nc; k++)
+        x.c[k] = decl->c[instance * decl->nc + k / NEVH__LANES];
+    for (size_t i = 0; i < NEVH__LANES; i++)
+        x.t[i] = 0;
+    for (size_t k = 0; k < size; k++)
+        x.z[k] = 0;
+    return x;
+}
+
+static void add_values(const trial *x, size_t k, double step, double sign) {
+    const nevh_term *decl = &x->term->decl;
+    for (size_t i = 0; i < NEVH__LANES * x->nv; i++)
+        x->beside[i] = x->z[i] + (i / NEVH__LANES == k ? sign * step : 0);
+    nevh__term_values(x->term, false, NEVH__LANES, NEVH__LANES, x->t, x->beside,
+                      x->beside + NEVH__LANES * decl->nq, x->c, x->h, x->one);
+    for (size_t i = 0; i < NEVH__LANES; i++)
+        x->slope[k * NEVH__LANES + i] += sign * x->h[i] / (2 * step);
+}
+
+/* The derivatives at all eight states; differences over a step. */
+static void take_slopes(const trial *x, double step) {
+    const nevh_term *decl = &x->term->decl;
+    size_t p = NEVH__LANES * decl->nq;
+    for (size_t i = 0; i < NEVH__LANES * x->nv; i++)
+        x->slope[i] = 0;
+    if (decl->gradient)
+        decl->gradient(NEVH__LANES, x->t, x->z, x->z + p, x->c, decl->params,
+                       x->slope, x->slope + p);
+    for (size_t k = 0; !decl->gradient && k < x->nv; k++) {
+        add_values(x, k, step, 1);
+        add_values(x, k, step, -1);
+    }
+}
+
+/* States 0, e_j and -e_j. */
+static void find_column(const trial *x, size_t j, double form[]) {
+    double *row = x->z + j * NEVH__LANES;
+    row[1] = 1;
+    row[2] = -1;
+    take_slopes(x, 1);
+    row[1] = row[2] = 0;
+    for (size_t i = 0; i < x->nv; i++) {
+        const double *slope = x->slope + i * NEVH__LANES;
+        form[i * (x->nv + 1) + j] = (slope[1] - slope[2]) / 2;
+        form[i * (x->nv + 1) + x->nv] = slope[0];
+    }
+}
+
+/* The derivative that follows from a row of the form, and the size of its parts. */
+static double linear(const trial *x, size_t lane, const double row[],
+                     double *size) {
+    double sum = row[x->nv];
+    *size = fabs(sum);
+    for (size_t j = 0; j < x->nv; j++) {
+        double part = row[j] * x->z[j * NEVH__LANES + lane];
+        sum += part;
+        *size += fabs(part);
+    }
+    return sum;
+}
+
+/* At one state; false, too, where something is not finite.  Differences over a step
+   are rounded as the largest derivative that far away is. */
+static bool follows(const trial *x, size_t lane, double step,
+                    const double form[]) {
+    double size, least = 0;
+    for (size_t i = 0; !x->term->decl.gradient && i < x->nv * (x->nv + 1); i++)
+        least += fabs(form[i]) * (i % (x->nv + 1) < x->nv ? step : 1);
+    for (size_t i = 0; i < x->nv; i++) {
+        double due = linear(x, lane, form + i * (x->nv + 1), &size);
+        double off = fabs(x->slope[i * NEVH__LANES + lane] - due);
+        if (!isfinite(off) || off > roundings * DBL_EPSILON * fmax(size, least))
+            return false;
+    }
+    return true;
+}
+
+bool nevh__form_find(const nevh__term_entry *term, size_t instance,
+                     double form[], double room[]) {
+    static const int powers[TRIALS] = {-20, 0, 20, 45};
+    trial x = lay_out(term, instance, room);
+    uint64_t random = 1;
+    for (size_t j = 0; j < x.nv; j++)
+        find_column(&x, j, form);
+    for (size_t i = 0; i < TRIALS; i++) {
+        double length = ldexp(1, powers[i]);
+        for (size_t k = 0; k < NEVH__LANES * x.nv; k++)
+            x.z[k] = length * nevh__random(&random);
+        take_slopes(&x, length);
+        for (size_t lane = 0; lane < NEVH__LANES; lane++)
+            if (!follows(&x, lane, length, form))
+                return false;
+    }
+    return true;
+}
+
+static int is_form(const nevh__term_entry *term, bool *is) {
+    const nevh_term *decl = &term->decl;
+    size_t nv = decl->nq + decl->np;
+    double *room =
+        nevh__array(nevh__form_room(decl) + nv * (nv + 1), sizeof *room);
+    if (!room)
+        return NEVH_ENOMEM;
+    *is = true;
+    for (size_t i = 0; *is && i < decl->count; i++)
+        *is = nevh__form_find(term, i, room, room + nv * (nv + 1));
+    free(room);
+    return NEVH_OK;
+}
+
+enum { MOST_READ = 64 }; /* by an instance of a form */
+
+static int choose(const nevh_system *s, const nevh__term_entry *term,
+                  bool *fast, const char **reason) {
+    const nevh_term *decl = &term->decl;
+    nevh_speed speed = s->effects[term->effect].speed;
+    size_t nv = decl->nq + decl->np;
+    *fast = speed != NEVH_SLOW && !decl->time && nv && nv <= MOST_READ;
+    if (*fast && is_form(term, fast))
+        return NEVH_ENOMEM;
+    *reason = *fast || !nv         ? NULL
+              : speed == NEVH_FAST ? "is to be fast and is no such form"
+              : !decl->np          ? NULL
+              : speed == NEVH_SLOW ? "is to be slow and reads momenta"
+              : decl->time         ? "reads momenta and the time"
+                                   : "reads momenta and is no such form";
+    return NEVH_OK;
+}
+
+int nevh__parts_find(const nevh_system *s, bool fast[],
+                     nevh__parts_fault *fault) {
+    bool any = false;
+    *fault = (nevh__parts_fault){NULL, NULL};
+    for (size_t i = 0; i < s->n_terms; i++) {
+        const char *reason = NULL;
+        fast[i] = false;
+        if (nevh__term_on(s, s->terms[i]) &&
+            choose(s, s->terms[i], &fast[i], &reason))
+            return NEVH_ENOMEM;
+        if (reason && !fault->term)
+            *fault = (nevh__parts_fault){&s->terms[i]->decl, reason};
+        any |= fast[i];
+    }
+    return any && !fault->term ? NEVH_OK : NEVH_ESTRUCT;
+}
+
+int nevh_system_parts(const nevh_system *s, const char *effect, size_t *fast,
+                      size_t *slow, const char **term) {
+    nevh__parts_fault fault;
+    size_t counts[2] = {0, 0};
+    int status = nevh_system_status(s);
+    if (status)
+        return status;
+    bool *all = nevh__array(s->n_terms, sizeof *all), known = false;
+    status = all ? nevh__parts_find(s, all, &fault) : NEVH_ENOMEM;
+    for (size_t i = 0; effect && i < s->n_effects; i++)
+        known |= strcmp(s->effects[i].name, effect) == 0;
+    for (size_t i = 0; status != NEVH_ENOMEM && known && i < s->n_terms; i++)
+        if (nevh__term_on(s, s->terms[i]) &&
+            strcmp(s->terms[i]->decl.effect, effect) == 0)
+            counts[all[i] ? 0 : 1] += s->terms[i]->decl.count;
+    if (fast)
+        *fast = counts[0];
+    if (slow)
+        *slow = counts[1];
+    if (term && status != NEVH_ENOMEM)
+        *term = fault.term ? fault.term->name : NULL;
+    free(all);
+    return status == NEVH_ENOMEM || known ? status : NEVH_EINVAL;
+}

@@ -1,0 +1,103 @@
+/* nevh check: the parts that schemes by parts find, and how large B is.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parts_words.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* The largest forces on each coordinate, along an orbit. */
+typedef struct {
+    nevh_field *all, *slow; /* gradients of H, and of B */
+    size_t n;
+    double *whole, *part; /* at one state */
+    double *most;         /* of A, and of B behind it */
+} forces;
+
+static int take_forces(void *data, size_t step, double t, const double q[],
+                       const double p[]) {
+    forces *f = data;
+    (void)step;
+    if (nevh_field_gradient(f->all, 1, &t, q, p, f->whole, NULL) ||
+        nevh_field_gradient(f->slow, 1, &t, q, p, f->part, NULL))
+        return 1;
+    for (size_t k = 0; k < f->n; k++) {
+        f->most[k] = fmax(f->most[k], fabs(f->whole[k] - f->part[k]));
+        f->most[f->n + k] = fmax(f->most[f->n + k], fabs(f->part[k]));
+    }
+    return 0;
+}
+
+/* The largest force of B over that of A on the same coordinate; infinite where A
+   has none. */
+static double ratio_along(const plan *p, nevh_stepper *s) {
+    enum { STEPS = 1000 };
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    double *room = tool_allocate(6 * p->n, sizeof *room), worst = 0;
+    forces f = {.all = nevh_field_new(p->system, &o),
+                .slow = nevh_stepper_field(s),
+                .n = p->n,
+                .whole = room,
+                .part = room + p->n,
+                .most = room + 2 * p->n};
+    double *q = room + 4 * p->n, *momenta = q + p->n;
+    for (size_t k = 0; k < p->n; k++) {
+        q[k] = p->q[k];
+        momenta[k] = p->p[k];
+    }
+    double h = p->dt[0], steps = fmin(STEPS, ceil((p->t_end - o.t) / h));
+    nevh_observer watch = {take_forces, &f, 1};
+    nevh_run(s, o.t, h, (size_t)fmax(1, steps), q, momenta, &watch, 1);
+    for (size_t k = 0; k < p->n; k++)
+        if (f.most[p->n + k] > 0)
+            worst = fmax(worst, f.most[p->n + k] / f.most[k]);
+    nevh_field_free(f.all);
+    free(room);
+    return worst;
+}
+
+static void name_parts(const plan *p, list *fast, list *slow) {
+    for (size_t i = 0; i < nevh_system_effect_count(p->system); i++) {
+        const char *name = nevh_system_effect_name(p->system, i);
+        size_t forms = 0, others = 0;
+        nevh_system_parts(p->system, name, &forms, &others, NULL);
+        if (forms)
+            list_print(fast, others ? "%s (%zu of %zu terms)" : "%s", name,
+                       forms, forms + others);
+        if (others)
+            list_print(slow, forms ? "%s (the others)" : "%s", name);
+    }
+}
+
+static void size_words(const plan *p, nevh_stepper *s, list *notes) {
+    double ratio = ratio_along(p, s);
+    if (ratio == 0)
+        list_add(notes, "  B is 0: steps of any length are exact");
+    else if (isfinite(ratio))
+        list_print(notes,
+                   "  forces of B are at most %.2g of those of A on the same "
+                   "coordinate%s",
+                   ratio,
+                   ratio < 0.3 ? "" : ": the parts do not help much here");
+    else
+        list_add(notes, "  A has no force on a coordinate that B has one on: "
+                        "the parts do not help there");
+}
+
+void parts_words(const plan *p, list *notes) {
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    nevh_stepper *s = nevh_stepper_new(p->system, nevh_aba864, &o);
+    list fast = {0}, slow = {0};
+    if (!nevh_stepper_status(s)) {
+        name_parts(p, &fast, &slow);
+        char *a = list_joined(&fast), *b = list_joined(&slow);
+        list_print(notes,
+                   "Parts of H = A + B for schemes by parts: A, whose flow is "
+                   "exact: %s; B, which kicks: %s",
+                   a, *b ? b : "nothing");
+        size_words(p, s, notes);
+        free(a);
+        free(b);
+    }
+    list_free(&fast);
+    list_free(&slow);
+    nevh_stepper_free(s);
+}
