@@ -380,9 +380,9 @@ NEVH__INLINE void add_block(const block *b, const double *d_high,
     }
 }
 
-NEVH_SIMD void nevh__form_flow_add(const nevh__form_flow *f, size_t which,
-                                   size_t width, const double q[],
-                                   const double p[], double dq[], double dp[]) {
+NEVH_SIMD static void add_blocks(const nevh__form_flow *f, size_t which,
+                                 size_t width, const double q[],
+                                 const double p[], double dq[], double dp[]) {
     const set *x = &f->sets[f->now];
     double high[2 * MOST_BLOCK], low[2 * MOST_BLOCK];
     for (size_t lane = 0; lane < width; lane++) {
@@ -395,4 +395,10 @@ NEVH_SIMD void nevh__form_flow_add(const nevh__form_flow *f, size_t which,
             column += 2 * b->count + 1;
         }
     }
+}
+
+void nevh__form_flow_add(const nevh__form_flow *f, size_t which, size_t width,
+                         const double q[], const double p[], double dq[],
+                         double dp[]) {
+    add_blocks(f, which, width, q, p, dq, dp);
 }

@@ -135,7 +135,8 @@ rows() { # rows SCENE L E T [INTEGRATORS]
         --format csv --quiet 2>&1 | awk -F, '
         NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
         { e = $at["max_energy_error"]
-          printf "%s %s %s\n", $at["integrator"], $at["status"],
+          status = $at["status"]; sub(/: since t = .*/, "", status)
+          printf "%s %s %s\n", $at["integrator"], status,
               e < 1e-9 ? "small" : sprintf("%.4g", e) }'
 }
 units='-100,0,0 0,100,0 0,0,-100'
