@@ -67,37 +67,38 @@ static void name_parts(const plan *p, list *fast, list *slow) {
     }
 }
 
-static void size_words(const plan *p, nevh_stepper *s, list *notes) {
-    double ratio = ratio_along(p, s);
+static void size_words(double ratio, list *notes) {
     if (ratio == 0)
         list_add(notes, "  B is 0: steps of any length are exact");
-    else if (isfinite(ratio))
+    else
         list_print(notes,
                    "  forces of B are at most %.2g of those of A on the same "
                    "coordinate%s",
                    ratio,
                    ratio < 0.3 ? "" : ": the parts do not help much here");
-    else
-        list_add(notes, "  A has no force on a coordinate that B has one on: "
-                        "the parts do not help there");
 }
 
+static void all_words(const plan *p, double ratio, list *notes) {
+    list fast = {0}, slow = {0};
+    name_parts(p, &fast, &slow);
+    char *a = list_joined(&fast), *b = list_joined(&slow);
+    list_print(notes,
+               "Parts of H = A + B for schemes by parts: A, whose flow is "
+               "exact: %s; B, which kicks: %s",
+               a, *b ? b : "nothing");
+    size_words(ratio, notes);
+    free(a);
+    free(b);
+    list_free(&fast);
+    list_free(&slow);
+}
+
+/* Nothing where A has no force: there are other splittings for T(p) + V(q). */
 void parts_words(const plan *p, list *notes) {
     nevh_options o = plan_options(p, p->gradients.item[0]);
     nevh_stepper *s = nevh_stepper_new(p->system, nevh_aba864, &o);
-    list fast = {0}, slow = {0};
-    if (!nevh_stepper_status(s)) {
-        name_parts(p, &fast, &slow);
-        char *a = list_joined(&fast), *b = list_joined(&slow);
-        list_print(notes,
-                   "Parts of H = A + B for schemes by parts: A, whose flow is "
-                   "exact: %s; B, which kicks: %s",
-                   a, *b ? b : "nothing");
-        size_words(p, s, notes);
-        free(a);
-        free(b);
-    }
-    list_free(&fast);
-    list_free(&slow);
+    double ratio = nevh_stepper_status(s) ? INFINITY : ratio_along(p, s);
+    if (isfinite(ratio))
+        all_words(p, ratio, notes);
     nevh_stepper_free(s);
 }
