@@ -7,25 +7,8 @@
 #include "kernels/form_flow_private.h"
 #include "schemes_private.h"
 
-#define ABA(id, stages_, given, weights_, other, source_)                      \
-    static const nevh_splitting id##_table = {NEVH_DRIFT, NEVH_PALINDROME,     \
-                                              given, weights_};                \
-    const nevh_integrator nevh__##id##_entry = {                               \
-        .name = #id,                                                           \
-        .aliases = other,                                                      \
-        .source = source_,                                                     \
-        .order = 4,                                                            \
-        .stages = stages_,                                                     \
-        .gradients = stages_,                                                  \
-        .symplectic = NEVH_YES,                                                \
-        .symmetric = NEVH_YES,                                                 \
-        .explicit_form = NEVH_YES,                                             \
-        .preserves_energy = NEVH_NO,                                           \
-        .needs = NEVH_PARTS,                                                   \
-        .kernel = &nevh__parts_kernel,                                         \
-        .table = &id##_table,                                                  \
-    };                                                                         \
-    NEVH__PUBLISH(id)
+#define ABA(id, stages, given, weights, aliases, source)                       \
+    NEVH__BY_PARTS(id, 4, stages, given, weights, aliases, source)
 #define BLANES                                                                 \
     "S. Blanes, F. Casas, A. Farres, J. Laskar, J. Makazaga, A. Murua, New "   \
     "families of symplectic splitting methods for numerical integration in "   \

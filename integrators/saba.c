@@ -24,27 +24,11 @@ const nevh_integrator nevh__wisdom_holman_entry = {
 };
 NEVH__PUBLISH(wisdom_holman);
 
-#define SABA(id, stages_, given, weights_, what)                               \
-    static const nevh_splitting id##_table = {NEVH_DRIFT, NEVH_PALINDROME,     \
-                                              given, weights_};                \
-    const nevh_integrator nevh__##id##_entry = {                               \
-        .name = #id,                                                           \
-        .aliases = what,                                                       \
-        .source = "J. Laskar, P. Robutel, High order symplectic integrators "  \
-                  "for perturbed Hamiltonian systems, Celest. Mech. Dyn. "     \
-                  "Astron. 80 (2001) 39-62",                                   \
-        .order = 2,                                                            \
-        .stages = stages_,                                                     \
-        .gradients = stages_,                                                  \
-        .symplectic = NEVH_YES,                                                \
-        .symmetric = NEVH_YES,                                                 \
-        .explicit_form = NEVH_YES,                                             \
-        .preserves_energy = NEVH_NO,                                           \
-        .needs = NEVH_PARTS,                                                   \
-        .kernel = &nevh__parts_kernel,                                         \
-        .table = &id##_table,                                                  \
-    };                                                                         \
-    NEVH__PUBLISH(id)
+#define SABA(id, stages, given, weights, aliases)                              \
+    NEVH__BY_PARTS(id, 2, stages, given, weights, aliases,                     \
+                   "J. Laskar, P. Robutel, High order symplectic integrators " \
+                   "for perturbed Hamiltonian systems, Celest. Mech. Dyn. "    \
+                   "Astron. 80 (2001) 39-62")
 
 /* 1/2 - sqrt(3)/6; with e for the size of B the error is e h^4 + e^2 h^2. */
 static const long double two[] = {

@@ -9,6 +9,28 @@
    A, its kicks those of B = V(t, q). */
 extern const nevh_kernel nevh__parts_kernel;
 
+/* A symmetric scheme by parts of that order, from the weights that a palindrome is
+   given by. */
+#define NEVH__BY_PARTS(id, order_, stages_, given, weights, aliases_, source_) \
+    static const nevh_splitting id##_table = {NEVH_DRIFT, NEVH_PALINDROME,     \
+                                              given, weights};                 \
+    const nevh_integrator nevh__##id##_entry = {                               \
+        .name = #id,                                                           \
+        .aliases = aliases_,                                                   \
+        .source = source_,                                                     \
+        .order = order_,                                                       \
+        .stages = stages_,                                                     \
+        .gradients = stages_,                                                  \
+        .symplectic = NEVH_YES,                                                \
+        .symmetric = NEVH_YES,                                                 \
+        .explicit_form = NEVH_YES,                                             \
+        .preserves_energy = NEVH_NO,                                           \
+        .needs = NEVH_PARTS,                                                   \
+        .kernel = &nevh__parts_kernel,                                         \
+        .table = &id##_table,                                                  \
+    };                                                                         \
+    NEVH__PUBLISH(id)
+
 /* The flow of A = z' K z / 2 + g' z, by the matrix exponential of each block of
    variables that K connects. */
 typedef struct nevh__form_flow nevh__form_flow;

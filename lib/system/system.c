@@ -193,13 +193,21 @@ int nevh_system_add(nevh_system *s, const nevh_term *from) {
     return status ? status : append(s, &term);
 }
 
-int nevh_system_enable(nevh_system *s, const char *name, bool on) {
+/* NULL, with a status: there is none, or the system has failed. */
+static nevh__effect *effect_to_change(nevh_system *s, const char *name) {
     if (nevh_system_status(s))
-        return nevh_system_status(s);
+        return NULL;
     nevh__effect *effect = effect_named(s, name);
     if (!effect)
-        return nevh__fail(&s->report, NEVH_EINVAL, "there is no effect \"%s\"",
-                          name ? name : "");
+        nevh__fail(&s->report, NEVH_EINVAL, "there is no effect \"%s\"",
+                   name ? name : "");
+    return effect;
+}
+
+int nevh_system_enable(nevh_system *s, const char *name, bool on) {
+    nevh__effect *effect = effect_to_change(s, name);
+    if (!effect)
+        return nevh_system_status(s);
     if (effect->on != on)
         s->revision++;
     effect->on = on;
@@ -207,12 +215,9 @@ int nevh_system_enable(nevh_system *s, const char *name, bool on) {
 }
 
 int nevh_system_set_speed(nevh_system *s, const char *name, nevh_speed speed) {
-    if (nevh_system_status(s))
-        return nevh_system_status(s);
-    nevh__effect *effect = effect_named(s, name);
+    nevh__effect *effect = effect_to_change(s, name);
     if (!effect)
-        return nevh__fail(&s->report, NEVH_EINVAL, "there is no effect \"%s\"",
-                          name ? name : "");
+        return nevh_system_status(s);
     if (effect->speed != speed)
         s->revision++;
     effect->speed = speed;
