@@ -240,6 +240,7 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/variational.c \
 	lib/diagnose/chaos_private.h \
 	lib/diagnose/frequencies_private.h \
+	lib/diagnose/spectrum_private.h \
 	lib/diagnose/chaos.c \
 	lib/diagnose/chaos_walk.c \
 	lib/diagnose/chaos_starts.c \
@@ -250,6 +251,7 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/shadow.c \
 	lib/diagnose/rates.c \
 	lib/diagnose/frequencies.c \
+	lib/diagnose/spectrum.c \
 	lib/diagnose/loop_private.h \
 	lib/diagnose/loop.c \
 	lib/diagnose/loop_panel.c \

@@ -1,422 +1,49 @@
-/* nevh: the frequencies in an orbit.
-
-   Samples are at equal times: cosines and sines of a line are those of a few times,
-   turned by a few angles.
+/* nevh: the frequencies in an orbit, and their errors: from both halves of the samples
+   and from another window.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/frequencies_private.h"
-#include "system/system_private.h"
-#include <gsl/gsl_fft_real.h>
+#include "diagnose/spectrum_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { ORDER = 5, LESS = 3, ROUNDS = 20 };
-enum { ROW = 4 * NEVH__LANES }; /* samples at a time */
+enum { LESS = 3 }; /* the order of the other window */
 static const double pi = 3.14159265358979323846;
-
-/* Samples of -1 ... 1, in units of half their length.  Rows are padded to vectors, by
-   zeros and samples of no weight. */
-typedef struct {
-    size_t count, padded;
-    double half; /* the time of half the length */
-    double *values, *rest, *window, *time;
-    double *rows; /* 1, waves of all lines, what moves change, and one more */
-    size_t lines;
-    double *w, *cosine, *sine; /* of each line: round the middle */
-    double *move, *before;     /* by which w was last off; w before a line */
-    double mean;
-    size_t size;   /* of the transform, a power of 2 */
-    double *power; /* size */
-} analysis;
-
-static double *row_of(const analysis *a, size_t i) {
-    return a->rows + i * a->padded;
-}
-
-/* Turns `count` cosines and sines by one angle. */
-NEVH_SIMD static void turn(size_t count, double angle, const double by_c[],
-                           const double by_s[], double cosine[],
-                           double sine[]) {
-    double c = cos(angle), s = sin(angle);
-    NEVH_LANES(i, count) {
-        cosine[i] = c * by_c[i] - s * by_s[i];
-        sine[i] = s * by_c[i] + c * by_s[i];
-    }
-}
-
-/* The cosines and sines of w t: those of the first eight, turned to the next seven
-   times as many, and so on, so that rounding is that of a few products. */
-static void find_wave(const analysis *a, double w, double cosine[],
-                      double sine[]) {
-    double h = 2 * a->half / (double)(a->count - 1);
-    for (size_t i = 0; i < NEVH__LANES; i++) {
-        cosine[i] = cos(w * a->time[i]);
-        sine[i] = sin(w * a->time[i]);
-    }
-    for (size_t size = NEVH__LANES; size < a->padded; size *= 8)
-        for (size_t at = size; at < 8 * size && at < a->padded; at += size)
-            turn(a->padded - at < size ? a->padded - at : size,
-                 w * ((double)at * h), cosine, sine, cosine + at, sine + at);
-}
-
-NEVH_SIMD static void multiply(size_t count, const double x[], const double y[],
-                               double product[]) {
-    NEVH_LANES(i, count) {
-        product[i] = x[i] * y[i];
-    }
-}
-
-/* sum += factor x */
-NEVH_SIMD static void add_times(size_t count, double factor, const double x[],
-                                double sum[]) {
-    NEVH_LANES(i, count) {
-        sum[i] += factor * x[i];
-    }
-}
-
-/* Sums that do not wait for one another. */
-NEVH_SIMD static double dot(size_t count, const double x[], const double y[]) {
-    nevh__vector sum[ROW / NEVH__IN_VECTOR] = {{0}};
-    double parts[ROW], all = 0;
-    for (size_t k = 0; k < count; k += ROW)
-        for (size_t i = 0; i < ROW / NEVH__IN_VECTOR; i++)
-            sum[i] += *(const nevh__vector *)(x + k + i * NEVH__IN_VECTOR) *
-                      *(const nevh__vector *)(y + k + i * NEVH__IN_VECTOR);
-    memcpy(parts, sum, sizeof parts);
-    for (size_t i = 0; i < ROW; i += NEVH__LANES)
-        all += nevh__sum_lanes(parts + i);
-    return all;
-}
-
-/* (1 + cos(pi x))^order, whose sum with the trapezoidal rule is exact. */
-static void make_window(analysis *a, int order) {
-    double sum = 0;
-    find_wave(a, pi / a->half, a->window, row_of(a, 0));
-    for (size_t k = 0; k < a->padded; k++) {
-        double factor = k < a->count ? 1 + a->window[k] : 0;
-        a->window[k] = factor;
-        for (int i = 1; i < order; i++)
-            a->window[k] *= factor;
-        sum += a->window[k];
-        row_of(a, 0)[k] = 1;
-    }
-    for (size_t k = 0; k < a->count; k++)
-        a->window[k] /= sum;
-}
-
-/* The transform of the rest at w, and half the slope of its square. */
-static double transform(const analysis *a, double w, double *slope) {
-    double *weighted = row_of(a, 3 * a->lines + 1), *c = weighted + a->padded,
-           *s = c + a->padded;
-    find_wave(a, w, c, s);
-    multiply(a->padded, a->window, a->rest, weighted);
-    double re = dot(a->padded, weighted, c), im = -dot(a->padded, weighted, s);
-    multiply(a->padded, weighted, a->time, weighted);
-    double dre = -dot(a->padded, weighted, s);
-    double dim = -dot(a->padded, weighted, c);
-    *slope = re * dre + im * dim;
-    return re * re + im * im;
-}
-
-/* The maximum of the square between two frequencies: its derivative falls through 0
-   there. NAN if it does not fall from one to the other. */
-static double peak(const analysis *a, double low, double high) {
-    double at_low, at_high, at_middle;
-    transform(a, low, &at_low);
-    transform(a, high, &at_high);
-    if (!(at_low > 0 && at_high < 0))
-        return NAN;
-    int side = 0;
-    double w = (low + high) / 2;
-    for (int i = 0; i < 100 && high - low > 4e-16 * high; i++) {
-        w = (low * at_high - high * at_low) / (at_high - at_low);
-        if (!(w > low && w < high) || i % 3 == 2)
-            w = (low + high) / 2;
-        transform(a, w, &at_middle);
-        if (at_middle == 0)
-            break;
-        if (at_middle > 0) {
-            low = w;
-            at_low = at_middle;
-            at_high *= side == 1 ? 0.5 : 1;
-            side = 1;
-        } else {
-            high = w;
-            at_high = at_middle;
-            at_low *= side == -1 ? 0.5 : 1;
-            side = -1;
-        }
-    }
-    return w;
-}
-
-static double refine(const analysis *a, double low, double high) {
-    double w = peak(a, low, high);
-    return isnan(w) ? (low + high) / 2 : w;
-}
-
-/* The width of the window's peak on either side, in w. */
-static double resolution(const analysis *a) {
-    return pi / a->half;
-}
-
-/* The largest of the transform. */
-static double search(analysis *a) {
-    memset(a->power, 0, a->size * sizeof *a->power);
-    for (size_t k = 0; k < a->count; k++)
-        a->power[k] = a->window[k] * a->rest[k];
-    gsl_fft_real_radix2_transform(a->power, 1, a->size);
-    double h = 2 * a->half / (double)(a->count - 1), most = 0;
-    size_t best = 1;
-    for (size_t j = 1; j < a->size / 2; j++) {
-        double re = a->power[j], im = a->power[a->size - j];
-        if (re * re + im * im > most) {
-            most = re * re + im * im;
-            best = j;
-        }
-    }
-    double unit = 2 * pi / ((double)a->size * h), w = unit * (double)best;
-    return refine(a, fmax(w - unit, unit / 8), w + unit);
-}
-
-/* The residual of all lines but `but`. */
-static void take_off(analysis *a, size_t but) {
-    double *c = row_of(a, 3 * a->lines + 1), *s = c + a->padded;
-    for (size_t k = 0; k < a->count; k++)
-        a->rest[k] = a->values[k] - a->mean;
-    for (size_t i = 0; i < a->lines; i++) {
-        if (i == but)
-            continue;
-        find_wave(a, a->w[i], c, s);
-        add_times(a->padded, -a->cosine[i], c, a->rest);
-        add_times(a->padded, -a->sine[i], s, a->rest);
-    }
-}
-
-/* 1, then cosine and sine of each line, then what the line changes by where its
-   frequency does, in units of 1/half: rows, n of them. */
-static void find_basis(const analysis *a, size_t n) {
-    size_t lines = a->lines, padded = a->padded;
-    for (size_t i = 0; i < lines; i++) {
-        double *c = row_of(a, 2 * i + 1), *s = c + padded;
-        find_wave(a, a->w[i], c, s);
-        if (n == 2 * lines + 1)
-            continue;
-        double *move = row_of(a, 2 * lines + 1 + i);
-        memset(move, 0, padded * sizeof *move);
-        add_times(padded, a->sine[i] / a->half, c, move);
-        add_times(padded, -a->cosine[i] / a->half, s, move);
-        multiply(padded, a->time, move, move);
-    }
-}
-
-/* Solves m x = b, m symmetric and not negative, by Cholesky's factors; b becomes x.
-   An unknown that depends on those before it is left at 0, where GSL's solvers would
-   call its error handler, which aborts. */
-static void solve(double m[], double b[], size_t n) {
-    static const double dependent = 1e-14;
-    for (size_t j = 0; j < n; j++) {
-        double *row = m + j * n, own = row[j];
-        for (size_t i = 0; i < j; i++) {
-            for (size_t k = 0; k < i; k++)
-                row[i] -= row[k] * m[i * n + k];
-            row[i] = m[i * n + i] > 0 ? row[i] / m[i * n + i] : 0;
-            row[j] -= row[i] * row[i];
-            b[j] -= row[i] * b[i];
-        }
-        row[j] = row[j] > dependent * own ? sqrt(row[j]) : 0;
-        b[j] = row[j] > 0 ? b[j] / row[j] : 0;
-    }
-    for (size_t j = n; j-- > 0;) {
-        for (size_t i = j + 1; i < n; i++)
-            b[j] -= m[i * n + j] * b[i];
-        b[j] = m[j * n + j] > 0 ? b[j] / m[j * n + j] : 0;
-    }
-}
-
-/* Mean, cosines and sines by least squares under the window; with `moves`,
-   together with changes of frequencies to first order, which are in it then. */
-static bool fit(analysis *a, double moves[]) {
-    size_t n = (moves ? 3 : 2) * a->lines + 1;
-    double *m = nevh__array(n * n + n, sizeof *m);
-    if (!m)
-        return false;
-    double *b = m + n * n, *part = row_of(a, n);
-    find_basis(a, n);
-    for (size_t i = 0; i < n; i++) {
-        multiply(a->padded, a->window, row_of(a, i), part);
-        b[i] = dot(a->padded, part, a->values);
-        for (size_t j = 0; j <= i; j++)
-            m[i * n + j] = dot(a->padded, part, row_of(a, j));
-    }
-    solve(m, b, n);
-    a->mean = b[0];
-    for (size_t i = 0; i < a->lines; i++) {
-        a->cosine[i] = b[2 * i + 1];
-        a->sine[i] = b[2 * i + 2];
-        if (moves)
-            moves[i] = b[2 * a->lines + 1 + i] / a->half;
-    }
-    free(m);
-    return true;
-}
-
-static double amplitude(const analysis *a, size_t i) {
-    return hypot(a->cosine[i], a->sine[i]);
-}
-
-/* All lines together, as their peaks overlap: Newton's method, as long as moves
-   get smaller.  They end at what rounding does. */
-static bool refine_all(analysis *a) {
-    static const double still = 1e-16, slower = 0.7;
-    double before = resolution(a);
-    for (int i = 0; i < ROUNDS; i++) {
-        double most = 0, part = 0;
-        if (!fit(a, a->move))
-            return false;
-        for (size_t k = 0; k < a->lines; k++) {
-            most = fmax(most, fabs(a->move[k]));
-            part = fmax(part, fabs(a->move[k]) / a->w[k]);
-        }
-        if (!(most < before))
-            break;
-        for (size_t k = 0; k < a->lines; k++)
-            a->w[k] = fmax(a->w[k] + a->move[k], resolution(a) / 8);
-        if (part < still)
-            break;
-        before = slower * most;
-    }
-    return fit(a, NULL);
-}
-
-/* The line that came last is left out again where it and another are one. */
-static bool split_line(const analysis *a) {
-    for (size_t i = 0; i < a->lines; i++)
-        for (size_t k = 0; k < i; k++)
-            if (fabs(a->w[i] - a->w[k]) < resolution(a) / 2)
-                return true;
-    return false;
-}
-
-/* Adds a line near w.  returns  false where memory is out */
-static bool add_line(analysis *a, double w, bool *split) {
-    size_t bytes = a->lines * sizeof *a->w;
-    memcpy(a->before, a->w, bytes);
-    a->w[a->lines++] = w;
-    if (!fit(a, NULL) || !refine_all(a))
-        return false;
-    *split = split_line(a);
-    if (!*split)
-        return true;
-    a->lines--;
-    memcpy(a->w, a->before, bytes);
-    return fit(a, NULL) && refine_all(a);
-}
-
-static double largest_rest(const analysis *a) {
-    double most = 0;
-    for (size_t k = 0; k < a->count; k++)
-        most = fmax(most, fabs(a->rest[k]) * a->window[k] * (double)a->count);
-    return most;
-}
-
-/* A line that is nearer to another than can be told apart. */
-static bool is_double(const analysis *a, double w) {
-    for (size_t i = 0; i < a->lines; i++)
-        if (fabs(a->w[i] - w) < resolution(a))
-            return true;
-    return false;
-}
-
-static bool find_lines(analysis *a, size_t most) {
-    static const double nothing = 1e-12;
-    double largest = 0;
-    bool split;
-    for (size_t k = 0; k < a->count; k++)
-        largest = fmax(largest, fabs(a->values[k]));
-    make_window(a, ORDER);
-    if (!fit(a, NULL))
-        return false;
-    while (a->lines < most) {
-        take_off(a, a->lines);
-        if (!(largest_rest(a) > nothing * largest))
-            break;
-        double w = search(a);
-        if (is_double(a, w))
-            break;
-        if (!add_line(a, w, &split))
-            return false;
-        if (split)
-            break;
-    }
-    return true;
-}
-
-static bool open(analysis *a, double h, size_t count, const double values[],
-                 size_t most) {
-    *a = (analysis){
-        .count = count, .half = h * (double)(count - 1) / 2, .size = 1};
-    while (a->size < 2 * count)
-        a->size *= 2;
-    a->padded = (count + ROW - 1) / ROW * ROW;
-    a->rest = nevh__array((3 * most + 8) * a->padded, sizeof(double));
-    a->w = nevh__array(5 * most, sizeof(double));
-    a->power = nevh__array(a->size, sizeof(double));
-    if (!a->rest || !a->w || !a->power)
-        return false;
-    a->window = a->rest + a->padded;
-    a->time = a->window + a->padded;
-    a->values = a->time + a->padded;
-    a->rows = a->values + a->padded;
-    memcpy(a->values, values, count * sizeof *values);
-    for (size_t k = 0; k < a->padded; k++)
-        a->time[k] = a->half * (2 * (double)k / (double)(count - 1) - 1);
-    a->cosine = a->w + most;
-    a->sine = a->cosine + most;
-    a->move = a->sine + most;
-    a->before = a->move + most;
-    return true;
-}
-
-static void close(analysis *a) {
-    free(a->rest);
-    free(a->w);
-    free(a->power);
-}
 
 /* Line i of the whole in a part: its frequency there, other lines as they are;
    NAN where the part does not show it. */
-static double frequency_in(const analysis *whole, analysis *part, size_t i,
-                           size_t from, int order) {
-    double width = 2 * resolution(part);
-    make_window(part, order);
-    take_off((analysis *)whole, i);
+static double frequency_in(const nevh__spectrum *whole, nevh__spectrum *part,
+                           size_t i, size_t from, int order) {
+    double width = 2 * nevh__spectrum_resolution(part);
+    nevh__spectrum_window(part, order);
+    nevh__spectrum_take_off((nevh__spectrum *)whole, i);
     memcpy(part->rest, whole->rest + from, part->count * sizeof *part->rest);
     double low = fmax(whole->w[i] - width, width / 16);
-    return peak(part, low, whole->w[i] + width);
+    return nevh__spectrum_peak(part, low, whole->w[i] + width);
 }
 
 /* The error of a line near by counts for this one, too, times the ratio of their
    amplitudes, at most 1.  Two lines that are hardly apart may both be off by a
    quarter of their distance. */
-static void share_errors(const analysis *a, nevh_spectral_line lines[]) {
+static void share_errors(const nevh__spectrum *a, nevh_spectral_line lines[]) {
     for (size_t i = 0; i < a->lines; i++)
         a->before[i] = lines[i].error;
     for (size_t i = 0; i < a->lines; i++)
         for (size_t k = 0; k < a->lines; k++) {
             double apart = fabs(a->w[i] - a->w[k]);
             double part = lines[k].amplitude / lines[i].amplitude;
-            double off = apart < 1.25 * resolution(a)
+            double off = apart < 1.25 * nevh__spectrum_resolution(a)
                              ? fmax(a->before[k], apart / 4)
                              : a->before[k];
-            if (k != i && apart < 3 * resolution(a) && lines[i].amplitude > 0)
+            if (k != i && apart < 3 * nevh__spectrum_resolution(a) &&
+                lines[i].amplitude > 0)
                 lines[i].error = fmax(lines[i].error, off * fmin(1, part));
         }
 }
 
 /* Leaves out lines far below the largest that differ between both halves: they come
    from rounding and from differences of H. */
-static void leave_out_noise(const analysis *a, nevh_spectral_line lines[],
+static void leave_out_noise(const nevh__spectrum *a, nevh_spectral_line lines[],
                             size_t *found) {
     static const double far_below = 1e-8, part = 0.125;
     double largest = 0;
@@ -426,20 +53,21 @@ static void leave_out_noise(const analysis *a, nevh_spectral_line lines[],
     for (size_t i = 0; i < *found; i++) {
         const nevh_spectral_line *l = &lines[i];
         bool small = l->amplitude < far_below * largest;
-        bool steady = fabs(l->drift) < part * resolution(a) &&
-                      l->error < part * resolution(a);
+        bool steady = fabs(l->drift) < part * nevh__spectrum_resolution(a) &&
+                      l->error < part * nevh__spectrum_resolution(a);
         if (!small || steady)
             lines[kept++] = *l;
     }
     *found = kept;
 }
 
-static bool describe(analysis *a, double h, nevh_spectral_line lines[],
+static bool describe(nevh__spectrum *a, double h, nevh_spectral_line lines[],
                      size_t *found) {
-    analysis half, again;
+    nevh__spectrum half, again;
     size_t count = (a->count + 1) / 2;
-    bool opened = open(&half, h, count, a->values, 1);
-    bool good = open(&again, h, a->count, a->values, 1) && opened;
+    bool opened = nevh__spectrum_open(&half, h, count, a->values, 1);
+    bool good =
+        nevh__spectrum_open(&again, h, a->count, a->values, 1) && opened;
     for (size_t i = 0; good && i < a->lines; i++) {
         double first = frequency_in(a, &half, i, 0, LESS);
         double second = frequency_in(a, &half, i, a->count - count, LESS);
@@ -447,16 +75,16 @@ static bool describe(analysis *a, double h, nevh_spectral_line lines[],
         double error = fmax(fabs(less - a->w[i]), fabs(second - first));
         error = fmax(error, fabs(a->move[i]));
         if (isnan(less) || isnan(second - first))
-            error = resolution(a);
+            error = nevh__spectrum_resolution(a);
         double phase = atan2(-a->sine[i], a->cosine[i]) - a->w[i] * a->half;
         lines[(*found)++] = (nevh_spectral_line){
-            a->w[i], amplitude(a, i), remainder(phase, 2 * pi),
+            a->w[i], nevh__spectrum_amplitude(a, i), remainder(phase, 2 * pi),
             fmax(error, 2e-16 * a->w[i]), second - first};
     }
     share_errors(a, lines);
     leave_out_noise(a, lines, found);
-    close(&again);
-    close(&half);
+    nevh__spectrum_close(&again);
+    nevh__spectrum_close(&half);
     return good;
 }
 
@@ -478,15 +106,16 @@ static int check(double h, size_t count, const double values[], size_t most) {
 
 int nevh_frequencies(double h, size_t count, const double values[], size_t most,
                      nevh_spectral_line lines[], size_t *found) {
-    analysis a;
+    nevh__spectrum a;
     int status = lines && found ? check(h, count, values, most) : NEVH_EINVAL;
     if (found)
         *found = 0;
     if (status)
         return status;
-    bool good = open(&a, h, count, values, most) && find_lines(&a, most) &&
+    bool good = nevh__spectrum_open(&a, h, count, values, most) &&
+                nevh__spectrum_find_lines(&a, most) &&
                 describe(&a, h, lines, found);
-    close(&a);
+    nevh__spectrum_close(&a);
     if (good)
         qsort(lines, *found, sizeof *lines, by_amplitude);
     return good ? NEVH_OK : NEVH_ENOMEM;
@@ -494,16 +123,17 @@ int nevh_frequencies(double h, size_t count, const double values[], size_t most,
 
 double nevh__main_frequency(double h, size_t count, const double values[],
                             size_t most) {
-    analysis a;
+    nevh__spectrum a;
     double w = NAN, largest = -1;
     if (check(h, count, values, most))
         return NAN;
-    bool good = open(&a, h, count, values, most) && find_lines(&a, most);
+    bool good = nevh__spectrum_open(&a, h, count, values, most) &&
+                nevh__spectrum_find_lines(&a, most);
     for (size_t i = 0; good && i < a.lines; i++)
-        if (amplitude(&a, i) > largest) {
-            largest = amplitude(&a, i);
+        if (nevh__spectrum_amplitude(&a, i) > largest) {
+            largest = nevh__spectrum_amplitude(&a, i);
             w = a.w[i];
         }
-    close(&a);
+    nevh__spectrum_close(&a);
     return w;
 }
