@@ -1,5 +1,8 @@
-# Check suites, one file each, tests/FOLDER/check_NAME.c.
+# Check suites, one file each, tests/FOLDER/check_NAME.c; the longest first, here and among
+# the scripts, so that no core waits for one at the end.
 suites = \
+	tests/native/check_native \
+	tests/hard/check_hard_cases \
 	tests/system/check_system \
 	tests/system/check_structure \
 	tests/gradient/check_gradient \
@@ -55,7 +58,6 @@ suites = \
 	tests/scheme/check_energy_preserving \
 	tests/scheme/check_evaluations \
 	tests/native/check_loops \
-	tests/native/check_native \
 	tests/native/check_native_cache \
 	tests/native/check_compilers \
 	tests/run/check_run \
@@ -98,7 +100,6 @@ suites = \
 	tests/robust/check_hard_steps \
 	tests/robust/check_hard \
 	tests/robust/check_hard_pendulum \
-	tests/hard/check_hard_cases \
 	tests/scheme/check_implicit \
 	tests/scheme/check_stiff \
 	tests/scheme/check_brouwer \
@@ -190,6 +191,9 @@ all_suites = $(suites) $(memory_suites)
 endif
 
 dist_check_SCRIPTS = \
+	tests/tool/nevh_native.sh \
+	tests/tool/nevh_page_browser.sh \
+	tests/tool/nevh_recommend.sh \
 	tests/native/step_headers.sh \
 	tests/build/symbols.sh \
 	tests/build/arrows.sh \
@@ -232,11 +236,9 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_report.sh \
 	tests/tool/nevh_report_browser.sh \
 	tests/tool/nevh_page.sh \
-	tests/tool/nevh_page_browser.sh \
 	tests/tool/nevh_page_lesson.sh \
 	tests/tool/nevh_portrait.sh \
 	tests/tool/nevh_map.sh \
-	tests/tool/nevh_native.sh \
 	tests/tool/nevh_at_once.sh \
 	tests/tool/nevh_signals.sh \
 	tests/tool/nevh_sweep_file.sh \
@@ -256,7 +258,6 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_hard.sh \
 	tests/tool/nevh_exit.sh \
 	tests/tool/nevh_cost.sh \
-	tests/tool/nevh_recommend.sh \
 	tests/python/python.sh \
 	tests/python/notebook.sh \
 	tests/python/wheel.sh \
