@@ -5,12 +5,12 @@ SPDX-License-Identifier: GPL-3.0-or-later
 
 colours = (
     "#0072B2",
-    "#D55E00",
+    "#CB5500",
     "#009E73",
     "#CC79A7",
     "#000000",
-    "#E69F00",
-    "#56B4E9",
+    "#CA8600",
+    "#309DD3",
     "#882255",
 )
 marks = (

@@ -74,7 +74,7 @@ END {
     for (i = 1; i <= 8; i++)
         for (k = 1; k < i; k++) check(often[i], often[k])
     for (i = 0; i < colours; i++) {
-        if (contrast(colour[1, i], "#FFFFFF") < 2.2) print colour[1, i], "is lost on white"
+        if (contrast(colour[1, i], "#FFFFFF") < 3) print colour[1, i], "is lost on white"
         if (contrast(colour[2, i], "#17171B") < 3) print colour[2, i], "is lost on black"
     }
     if (pairs < 28) print "only", pairs + 0, "pairs"
@@ -86,10 +86,10 @@ seen() { # LOOKS
 seen "$srcdir/tools/plot/looks.h"
 test -s $work/out && { fails "are alike"; cat $work/out; }
 # Contrast: such colours would be found.
-sed 's/"#D55E00"/"#00A070"/' "$srcdir/tools/plot/looks.h" >$work/alike.h
+sed 's/"#CB5500"/"#00A070"/' "$srcdir/tools/plot/looks.h" >$work/alike.h
 seen $work/alike.h
 grep -q 'protanopia .*in colour' $work/out || fails "do not find equal colours"
-sed 's/"#E69F00"/"#F0E442"/' "$srcdir/tools/plot/looks.h" >$work/yellow.h
+sed 's/"#CA8600"/"#F0E442"/' "$srcdir/tools/plot/looks.h" >$work/yellow.h
 seen $work/yellow.h
 grep -q '#F0E442 is lost on white' $work/out || fails "do not find yellow on white"
 exit $status

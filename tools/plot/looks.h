@@ -8,15 +8,16 @@
 #define NEVH_LOOKS_H
 
 /* M. Okabe, K. Ito, Color Universal Design (2008), but for yellow, which is lost
-   on white, and a dark red; on white, and on black. */
+   on white, and a dark red; vermilion, orange and sky blue are darker, for a contrast
+   of 3 on white.  On white, and on black. */
 #define NEVH_COLOURS(X)                                                        \
     X("#0072B2", "#4FA8E0")                                                    \
-    X("#D55E00", "#F0803C")                                                    \
+    X("#CB5500", "#F0803C")                                                    \
     X("#009E73", "#2FC79B")                                                    \
     X("#CC79A7", "#E39AC3")                                                    \
     X("#000000", "#FFFFFF")                                                    \
-    X("#E69F00", "#F2B632")                                                    \
-    X("#56B4E9", "#9AD7FA")                                                    \
+    X("#CA8600", "#F2B632")                                                    \
+    X("#309DD3", "#9AD7FA")                                                    \
     X("#882255", "#C0568C")
 
 /* As plot_private.h numbers them, as a letter, and as matplotlib has them where "hollow"
