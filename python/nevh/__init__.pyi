@@ -104,11 +104,11 @@ def compare(scene: Any, integrators: str | Sequence[str] | None = None, dt: floa
         int | None = None, transform: float | str | None = None, match: Literal["steps",
         "work"] | None = None, diagnostics: bool | None = None, portable: bool | None =
         None, native: Literal["auto", "always", "never"] | None = None, no_cache: bool |
-        None = None, plot: str | PathLike[str] | None = None, plot_kind: Literal["phase",
-        "time", "energy", "configuration", "animation", "order"] | None = None,
-        keep_plot_script: str | PathLike[str] | None = None, allow_code: bool | None =
-        None, coordinates: Sequence[str] | None = None, options: Sequence[str] =
-        ()) -> Table: ...
+        None = None, plot: str | PathLike[str] | None = None, plot_narrow: bool | None =
+        None, plot_kind: Literal["phase", "time", "energy", "configuration", "animation",
+        "order"] | None = None, keep_plot_script: str | PathLike[str] | None = None,
+        allow_code: bool | None = None, coordinates: Sequence[str] | None = None, options:
+        Sequence[str] = ()) -> Table: ...
 def cost(scene: Any, integrators: str | Sequence[str] | None = None, dt: float | str |
         Sequence[float | str] | None = None, t_end: float | str | None = None, *,
         with_effects: str | Sequence[str] | None = None, without_effects: str |
@@ -118,21 +118,21 @@ def cost(scene: Any, integrators: str | Sequence[str] | None = None, dt: float |
         Literal["energy", "state"] | None = None, observable: float | str | None = None,
         repeat: int | None = None, budget: float | None = None, portable: bool | None =
         None, native: Literal["auto", "always", "never"] | None = None, no_cache: bool |
-        None = None, plot: str | PathLike[str] | None = None, plot_kind: Literal["phase",
-        "time", "energy", "configuration", "animation", "order"] | None = None,
-        keep_plot_script: str | PathLike[str] | None = None, allow_code: bool | None =
-        None, coordinates: Sequence[str] | None = None, options: Sequence[str] =
-        ()) -> Table: ...
+        None = None, plot: str | PathLike[str] | None = None, plot_narrow: bool | None =
+        None, plot_kind: Literal["phase", "time", "energy", "configuration", "animation",
+        "order"] | None = None, keep_plot_script: str | PathLike[str] | None = None,
+        allow_code: bool | None = None, coordinates: Sequence[str] | None = None, options:
+        Sequence[str] = ()) -> Table: ...
 def effects(scene: Any, integrators: str | Sequence[str] | None = None, dt: float | str |
         Sequence[float | str] | None = None, t_end: float | str | None = None, *,
         with_effects: str | Sequence[str] | None = None, without_effects: str |
         Sequence[str] | None = None, parameters: Mapping[str, Any] | None = None, y0:
         Mapping[str, float | str] | Sequence[float] | None = None, gradient: str |
         Sequence[str] | None = None, gradient_step: float | None = None, portable: bool |
-        None = None, plot: str | PathLike[str] | None = None, keep_plot_script: str |
-        PathLike[str] | None = None, allow_code: bool | None = None, impact: bool | None =
-        None, coordinates: Sequence[str] | None = None, options: Sequence[str] =
-        ()) -> Table: ...
+        None = None, plot: str | PathLike[str] | None = None, plot_narrow: bool | None =
+        None, keep_plot_script: str | PathLike[str] | None = None, allow_code: bool | None
+        = None, impact: bool | None = None, coordinates: Sequence[str] | None = None,
+        options: Sequence[str] = ()) -> Table: ...
 def export(scene: Any, integrators: str | Sequence[str] | None = None, dt: float | str |
         Sequence[float | str] | None = None, t_end: float | str | None = None, *,
         with_effects: str | Sequence[str] | None = None, without_effects: str |
@@ -163,9 +163,9 @@ def flow(scene: Any, integrators: str | Sequence[str] | None = None, dt: float |
         gradient_step: float | None = None, samples: int | None = None, at: float | str |
         Sequence[float | str] | None = None, shape: str | Sequence[str] | None = None,
         portable: bool | None = None, plot: str | PathLike[str] | None = None,
-        keep_plot_script: str | PathLike[str] | None = None, allow_code: bool | None =
-        None, coordinates: Sequence[str] | None = None, options: Sequence[str] =
-        ()) -> Table: ...
+        plot_narrow: bool | None = None, keep_plot_script: str | PathLike[str] | None =
+        None, allow_code: bool | None = None, coordinates: Sequence[str] | None = None,
+        options: Sequence[str] = ()) -> Table: ...
 def frequencies(scene: Any, integrators: str | Sequence[str] | None = None, dt: float |
         str | Sequence[float | str] | None = None, t_end: float | str | None = None, *,
         with_effects: str | Sequence[str] | None = None, without_effects: str |
@@ -205,9 +205,10 @@ def portrait(scene: Any, integrators: str | Sequence[str] | None = None, dt: flo
         | None = None, data: str | PathLike[str] | Mapping[str, Any] | None = None,
         portable: bool | None = None, native: Literal["auto", "always", "never"] | None =
         None, no_cache: bool | None = None, plot: str | PathLike[str] | None = None,
-        keep_plot_script: str | PathLike[str] | None = None, section: str | Sequence[str]
-        | None = None, allow_code: bool | None = None, coordinates: Sequence[str] | None =
-        None, options: Sequence[str] = ()) -> Text: ...
+        plot_narrow: bool | None = None, keep_plot_script: str | PathLike[str] | None =
+        None, section: str | Sequence[str] | None = None, allow_code: bool | None = None,
+        coordinates: Sequence[str] | None = None, options: Sequence[str] =
+        ()) -> Text: ...
 def recommend(scene: Any, integrators: str | Sequence[str] | None = None, dt: float | str
         | Sequence[float | str] | None = None, t_end: float | str | None = None, *,
         with_effects: str | Sequence[str] | None = None, without_effects: str |
@@ -247,11 +248,11 @@ def run(scene: Any, integrators: str | Sequence[str] | None = None, dt: float | 
         PathLike[str] | Mapping[str, Any] | None = None, transform: float | str | None =
         None, portable: bool | None = None, native: Literal["auto", "always", "never"] |
         None = None, no_cache: bool | None = None, plot: str | PathLike[str] | None =
-        None, plot_kind: Literal["phase", "time", "energy", "configuration", "animation",
-        "order"] | None = None, columns: str | Sequence[str] | None = None,
-        keep_plot_script: str | PathLike[str] | None = None, allow_code: bool | None =
-        None, coordinates: Sequence[str] | None = None, options: Sequence[str] =
-        ()) -> Table: ...
+        None, plot_narrow: bool | None = None, plot_kind: Literal["phase", "time",
+        "energy", "configuration", "animation", "order"] | None = None, columns: str |
+        Sequence[str] | None = None, keep_plot_script: str | PathLike[str] | None = None,
+        allow_code: bool | None = None, coordinates: Sequence[str] | None = None, options:
+        Sequence[str] = ()) -> Table: ...
 def scenes() -> List[str]: ...
 def section(scene: Any, integrators: str | Sequence[str] | None = None, dt: float | str |
         Sequence[float | str] | None = None, t_end: float | str | None = None, *,
@@ -262,10 +263,11 @@ def section(scene: Any, integrators: str | Sequence[str] | None = None, dt: floa
         gradient_step: float | None = None, vary: Mapping[str, Any] | Sequence[str] | str
         | None = None, transform: float | str | None = None, portable: bool | None = None,
         native: Literal["auto", "always", "never"] | None = None, no_cache: bool | None =
-        None, plot: str | PathLike[str] | None = None, keep_plot_script: str |
-        PathLike[str] | None = None, section: str | Sequence[str] | None = None, after:
-        float | str | None = None, allow_code: bool | None = None, coordinates:
-        Sequence[str] | None = None, options: Sequence[str] = ()) -> Table: ...
+        None, plot: str | PathLike[str] | None = None, plot_narrow: bool | None = None,
+        keep_plot_script: str | PathLike[str] | None = None, section: str | Sequence[str]
+        | None = None, after: float | str | None = None, allow_code: bool | None = None,
+        coordinates: Sequence[str] | None = None, options: Sequence[str] =
+        ()) -> Table: ...
 def sheet(number: int | str | None = None, *, name: str | PathLike[str] | None = None,
         key: str | Sequence[str] | None = None, answers: bool | None = None, form:
         Literal["page", "notebook", "check", "moodle", "form"] | None = None, output: str

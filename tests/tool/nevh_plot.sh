@@ -77,6 +77,13 @@ if test -n "$gnuplot"; then
         fails "keeps a script that draws nothing"
 fi
 
+# Narrow: panels one below the other, as high letters within 400 pixels.
+draws compare pendulum --t-end 2 --dt 0.1,0.05 --integrators verlet,rk4 --plot-narrow --plot $svg
+size=$(sed -n "s/.*viewBox='0 0 \([0-9]*\)[0-9.]* \([0-9]*\).*/\1 \2/p" $svg)
+test "${size% *}" -le 400 && test "${size#* }" -gt 600 || fails "draws narrow in $size"
+grep -q "font-size='14'" $svg || fails "draws narrow with other letters"
+exits 2 compare pendulum --plot-narrow --plot $work/none.png
+
 # A legend has a row for each series, also where a panel is not as high.
 draws compare pendulum --t-end 2 --dt 0.1,0.05 --plot $svg --integrators \
     verlet,midpoint,gauss4,gauss6,gauss8,gauss10,gauss12,rk4,euler,pefrl,ruth3,forest-ruth,suzuki4,blanes-moan4,yoshida6,tao2,tao4,dopri5

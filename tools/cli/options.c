@@ -137,6 +137,8 @@ const option_row option_rows[] = {
      "keep no compiled steps, and use none that were kept"},
     {"plot", "FILE", FILE_NAME(plot.file), "PLOT",
      "draw FILE.svg; by gnuplot .png or .pdf, or - in the terminal"},
+    {"plot-narrow", NULL, FLAG(plot.is_narrow), "PLOT",
+     "lay the .svg out for 400 pixels, panels and key one below the other"},
     {"plot-kind", "KIND", CHOICE(plot_kind, plot.kind), NULL,
      "of run" RUN_PLOTS(PLOT_HELP) "; of compare and cost: order, errors "
                                    "against dt with slopes",

@@ -225,6 +225,7 @@ typedef struct {
     struct { /* --plot and what belongs to it; NULL: not given */
         const char *file, *script;
         const char *narrow; /* of a report: the same for a telephone */
+        bool is_narrow;     /* it is laid out so itself */
         plot_kind kind;
     } plot;
     struct {

@@ -65,7 +65,10 @@ static int find_target(const options *o, target *t) {
         return TOOL_USAGE;
     if (t->medium == PLOT_TEXT)
         measure_terminal(t);
-    return TOOL_OK;
+    t->narrow = o->plot.is_narrow;
+    return t->narrow && t->medium != PLOT_SVG
+               ? tool_refuse("--plot-narrow takes --plot FILE.svg")
+               : TOOL_OK;
 }
 
 bool plot_wanted(const options *o) {
