@@ -67,7 +67,10 @@ for colour in $(sed -n 's/^    X("\(#[0-9A-F]*\)", "\(#[0-9A-F]*\)") .*/\1:\2/p'
 done
 # By default a scene has what says something, and not too much of it.
 exits 0 report pendulum -o $work/usual.html --t-end 20
-test "$(wc -c <$work/usual.html)" -le 300000 || fails "has $(wc -c <$work/usual.html) bytes"
+exits 0 report pendulum-periods -o $work/many.html --t-end 20
+for one in usual many; do
+    test "$(wc -c <$work/$one.html)" -le 300000 || fails "has $(wc -c <$work/$one.html) bytes"
+done
 cp $work/usual.html $work/out
 for heading in Sections 'Phase plane' Effects Gradients 'Properties of H'; do
     lacks "<h2>$heading</h2>"

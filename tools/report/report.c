@@ -69,11 +69,12 @@ static char *command_of(const report_job *w, const char *scene,
     return o->t_end ? shell_option(text, "t-end", o->t_end) : text;
 }
 
-/* Several starts for a portrait where the scene has one. */
+/* Several starts for a portrait where the scene has one, or more than can be told apart. */
 static void choose_starts(options *o, nevh_scene *scene) {
     enum { COUNT = 6 };
     double q = 0, p = 0;
-    if (nevh_scene_members(scene) || nevh_scene_start(scene, &q, &p) ||
+    uint64_t members = nevh_scene_members(scene);
+    if ((members && members <= 4 * COUNT) || nevh_scene_start(scene, &q, &p) ||
         (q == 0 && p == 0))
         return;
     o->vary = (list){0};
