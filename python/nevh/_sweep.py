@@ -17,6 +17,7 @@ from ._library import (_check, _gradient, _integrator, _lib, _Records, Refused,
 from ._arrays import np, _positive, _real, _whole_from_one
 from ._scene import _assign, Scene, _scene, _starts
 from ._progress import Progress
+from ._run import _Interrupt
 
 
 def _lines(vary):
@@ -91,11 +92,12 @@ def sweep(scene: str | os.PathLike | Scene, vary: Any = None,
                       gradient_step=settings.gradient_step,
                       gradient_steps=settings.gradient_steps,
                       tolerance=0 if not adapts else _tolerance(made, rtol))
-    made_sweep = _lib.sweep_new(made._made, c.byref(o))
-    try:
-        return _sweep(made_sweep)
-    finally:
-        _lib.sweep_free(made_sweep)
+    with _Interrupt() as interrupt:
+        made_sweep = _lib.sweep_new(made._made, c.byref(o))
+        try:
+            return _sweep(made_sweep, interrupt)
+        finally:
+            _lib.sweep_free(made_sweep)
 
 
 def _tolerance(scene, rtol):
@@ -114,7 +116,7 @@ def _ends(settings, t_end):
     return t_end
 
 
-def _sweep(s):
+def _sweep(s, interrupt):
     def check(status):
         _check(status, _lib.sweep_message(s))
     check(_lib.sweep_status(s))
@@ -132,14 +134,15 @@ def _sweep(s):
         status.append(_lib.sweep_run(s, 0, members, None, _lib.address("sweep_keep"),
                                      c.byref(records)))
         done.set()
-    # In a thread of its own, for that of the caller takes the interrupt key.  Its join
-    # would not do: of Python 3.11 it takes an interrupted thread for one that has ended.
+    # In a thread of its own, for that of the caller takes the interrupt key.
     threading.Thread(target=run).start()
     pressed = None
     with Progress("sweep") as progress:
-        while not done.is_set():
+        while True:
             try:
-                done.wait(0.25 if progress.looks else None)
+                interrupt.handle()
+                if done.wait(0.1):
+                    break
                 progress.at(np.count_nonzero(array["status"]) / members)
             except BaseException as error:
                 pressed = error

@@ -128,8 +128,7 @@ def _became(kind):
     def method(self, *_):
         if self.graph.decide is not None:
             return self.graph.decide(kind, self, None)
-        refuse("it makes a plain number of a value, by %s (operators, math and numpy are "
-               "followed)" % kind, self)
+        refuse("it makes a plain number of a value, by %s" % kind, self)
     return method
 
 

@@ -24,6 +24,9 @@ _warned, _factors, _scenes = {}, {}, weakref.WeakKeyDictionary()
 
 
 def calls_of(function, y0, args, parameters):
+    odd = [name for name in parameters or () if not isinstance(name, str)]
+    if odd:
+        raise Refused("parameters has the key %.80r; it takes {name: value}" % (odd[0],))
     return Calls(function, len(y0) // 2, args, parameters)
 
 
@@ -53,6 +56,11 @@ def scene_of(calls, t0, y0, coordinates=None):
 
 
 def _traced_of(calls, t0, y0, coordinates):
+    sizes = [re.search(r"\[(\d+)\]$", one) for one in coordinates or ()]
+    named = sum(int(size.group(1)) if size else 1 for size in sizes)
+    if coordinates and named != calls.n:
+        raise Refused("coordinates = %.80r names %d of the %d that y0 has"
+                      % (coordinates, named, calls.n))
     name = getattr(calls.function, "__name__", type(calls.function).__name__)
     title = "the function " + name if name.isidentifier() else "a function"
     return trace(calls, t0, y0, coordinates, title)
@@ -120,7 +128,9 @@ def place_of(untraceable, calls):
 def reason(untraceable, calls):
     file, line = place_of(untraceable, calls)
     text = linecache.getline(file, line).strip()
-    return "%s, line %d: %s%s" % (os.path.basename(file), line, untraceable.what,
+    what = untraceable.what if untraceable.what.endswith(")") else untraceable.what + (
+        " (write H as one formula of operators, math and numpy, or in C)")
+    return "%s, line %d: %s%s" % (os.path.basename(file), line, what,
                                   ": " + text if text else "")
 
 

@@ -593,6 +593,26 @@ def test_the_interrupt_key_ends_a_sweep():
     assert time.monotonic() - begin < 60
 
 
+def test_the_interrupt_key_before_a_sweep_begins():
+    needs("NumPy")
+    lib = nevh._library._lib
+    real, before = lib.sweep_new, signal.getsignal(signal.SIGINT)
+
+    def pressed(*arguments):
+        signal.raise_signal(signal.SIGINT)
+        return real(*arguments)
+    lib.sweep_new = pressed
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        error = raised(KeyboardInterrupt, "", nevh.sweep, PENDULUM,
+                       {"phi": np.linspace(0, 2, 1 << 16)}, "state", "verlet",
+                       dt=0.001, t_end=300, threads=1)
+    finally:
+        lib.sweep_new = real
+        signal.signal(signal.SIGINT, before)
+    assert (error.result["status"][-100:] == 0).all()
+
+
 # The paper's class.
 
 def test_the_papers_listing():

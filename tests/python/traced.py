@@ -380,6 +380,11 @@ def test_more_of_numpy():
     raised(nevh.Refused, "formulas have no numpy.linalg.eigh", nevh.Scene,
            lambda t, y: y[1]**2 + np.linalg.eigh(np.array([[y[0], 1], [1, 2]]))[0][0],
            y0=[1, 0])
+    for alien in (lambda y: math.erf(y[0]), lambda y: int(y[0]), lambda y: round(y[0], 2),
+                  lambda y: float("%g" % y[0]), lambda y: 0 if y[0] > 0 else 1):
+        said = str(raised(nevh.Refused, "", nevh.Scene,
+                          lambda t, y, alien=alien: y[1]**2 + alien(y), y0=[1, 0]))
+        assert "(write H as one formula of " in said or "(formulas have " in said, said
 
 
 def test_names_are_those_of_the_function():

@@ -98,6 +98,8 @@ calls += [(lambda y, H=PENDULUM, **named: nevh.HGrad(H, **named)(0, y), (y,), na
     ([1, 0], {"ds": -1}), ([1, 0], {"ds": "x"}), ([1, 0], {"ds": [1, 2, 3]}),
     ([1, 0], {"H": 5}), ([1, 0], {"H": raises}), ([1, 0], {"H": lambda t: 1}),
     ([1, 0], {"H": lambda t, y: "x"}), ([1, 0], {"H": lambda t, y: None}))]
+calls += [(nevh.solve, (lambda t, y: y[1]**2 + y[0]**2, (0, 1), [1, 0]), named) for named in (
+    {"coordinates": ["a", "b"]}, {"coordinates": ["a[2]"]}, {"parameters": {1: 2}})]
 calls += [(nevh.Scene, arguments, named) for arguments, named in (
     ((), {}), ((5,), {}), ((b"pendulum",), {}), (("",), {}), (("/",), {}),
     (("/dev/null",), {}), (("pendulum",), {"effects": {}}), ((), {"effects": 5}),
