@@ -8,15 +8,27 @@
 TEST(steps_double_and_can_be_typed) {
     for (int k = -160; k <= 160; k++) {
         char text[32];
-        double dt = grid_dt(k), ratio = dt / grid_dt(k + 1);
+        double dt = grid_dt(1, k), ratio = dt / grid_dt(1, k + 1);
         snprintf(text, sizeof text, "%.4g", dt);
         ck_assert(strtod(text, NULL) == dt);
         ck_assert(ratio > 1.04 && ratio < 1.075);
         if (k % 4 == 0 && (k + 160) % 40 != 36) /* 0.125 to 0.064 */
-            ck_assert_double_eq_tol(dt / grid_dt(k + GRID_STRIDE), 2, 1e-12);
-        ck_assert_double_eq_tol(dt / grid_dt(k + 40), 10, 1e-12);
+            ck_assert_double_eq_tol(dt / grid_dt(1, k + GRID_STRIDE), 2, 1e-12);
+        ck_assert_double_eq_tol(dt / grid_dt(1, k + 40), 10, 1e-12);
     }
-    ck_assert(grid_dt(0) == 1 && grid_dt(28) == 0.2 && grid_dt(-12) == 2);
+    ck_assert(grid_dt(1, 0) == 1 && grid_dt(1, 28) == 0.2 &&
+              grid_dt(1, -12) == 2);
+}
+
+TEST(steps_are_the_same_in_every_unit_of_time) {
+    for (double unit = 1e-30; unit < 1e30; unit *= 977.3)
+        for (int k = -160; k <= 160; k++) {
+            char text[32];
+            double dt = grid_dt(unit, k);
+            ck_assert_double_eq_tol(dt / unit / grid_dt(1, k), 1, 6e-6);
+            snprintf(text, sizeof text, "%.6g", dt);
+            ck_assert(strtod(text, NULL) == dt);
+        }
 }
 
 TEST(tolerances_fall_by_decades) {
@@ -27,14 +39,6 @@ TEST(tolerances_fall_by_decades) {
             grid_tolerance(k) / grid_tolerance(k + GRID_STRIDE), 10, 1e-12);
     }
     ck_assert(grid_tolerance(24) == 0.01 && grid_tolerance(28) == 0.005);
-}
-
-TEST(places_are_the_coarsest_not_above) {
-    for (int k = -160; k <= 160; k++) {
-        ck_assert_int_eq(grid_dt_place(grid_dt(k)), k);
-        ck_assert_int_eq(grid_dt_place(1.02 * grid_dt(k)), k);
-        ck_assert_int_eq(grid_dt_place(0.99 * grid_dt(k)), k + 1);
-    }
 }
 
 TEST(a_power_is_found_between) {

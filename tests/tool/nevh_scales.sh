@@ -153,6 +153,22 @@ for file in "$srcdir"/scenes/*.nevh; do
             { fails "$file in 2^($unit)"; diff $work/usual $work/other; }
     done
 done
+# What is recommended is the same step of the same orbit, to the six digits of its dt.
+for name in pendulum kepler; do
+    for T in 0 13 -31 60; do
+        rescale 0 0 $T "$srcdir/scenes/$name.nevh" -v few=200
+        for scheme in gauss8 rk4; do
+            "$nevh" recommend $work/scene.nevh --energy-error 1e-7 --gradient exact \
+                --integrators $scheme --quiet --format csv 2>&1 |
+                awk -F, -v T=$T 'NR == 2 { print $2, $6/2^T, $9 }'
+        done >$work/$T
+        paste -d ' ' $work/0 $work/$T | awk '
+            function far(a, b, most) { return a/b - 1 > most || b/a - 1 > most }
+            NF != 6 || $1 != $4 || far($2, $5, 1e-5) || far($3, $6, 1e-2) { wrong = 1 }
+            END { exit wrong || NR != 2 }' ||
+            { fails "recommend $name in 2^$T"; diff $work/0 $work/$T; }
+    done
+done
 # A scene that gives steps of differences, and has a momentum that is 0.
 file=$srcdir/scenes/outer-solar-system.nevh
 for units in '0 0 0' '100 0 0' '0 -100 0' '0 0 -100'; do

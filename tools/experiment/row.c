@@ -293,7 +293,7 @@ void row_run(const plan *p, row *r) {
     r->by_state = p->by_state;
     r->observable = p->observable;
     r->observed_order = r->state_error = r->observable_error = r->stopped =
-        r->seconds = NAN;
+        r->seconds = r->fastest = NAN;
     nevh_stepper *s = row_stepper(p, r, p->balance);
     if (!refused(r, s)) {
         r->native = nevh_stepper_native(s, NULL);

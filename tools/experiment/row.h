@@ -37,6 +37,7 @@ typedef struct {
     double work;             /* by its counts: the same on every machine */
     double observed_seconds; /* seconds, observers included */
     double seconds, spread; /* median, and half of what the middle half spans */
+    double fastest;         /* the shortest of all times */
     double passed;          /* when a pole had been passed; NAN */
     const char *passed_effect; /* whose; NULL */
     double stopped;            /* where the scene's `stop` said; NAN: nowhere */

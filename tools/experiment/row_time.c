@@ -92,6 +92,7 @@ static void choose_share(stopwatch *w) {
 static void finish(const stopwatch *w, row *r, size_t rounds) {
     r->native = nevh_stepper_native(w->stepper, NULL);
     r->seconds = numbers_median(w->seconds, rounds);
+    r->fastest = fmin(r->fastest, w->seconds[0]);
     r->spread = (w->seconds[3 * rounds / 4] - w->seconds[rounds / 4]) / 2;
 }
 

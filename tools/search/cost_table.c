@@ -59,7 +59,7 @@ bool cost_is_beyond(const costs *c, size_t target) {
 
 static char *cell_text(const row *r, bool star) {
     char *time = cost_milliseconds(r->seconds);
-    char *text = text_print("%s %s (%.3g)", star ? "*" : " ", time, r->dt);
+    char *text = text_print("%s %s (%.6g)", star ? "*" : " ", time, r->dt);
     free(time);
     return text;
 }

@@ -114,7 +114,7 @@ static size_t last_alike(const costs *c, size_t first) {
 /* "dt = 0.1", "tolerance = 0.001". */
 static char *step_text(const row *r) {
     return r->tolerance > 0 ? text_print("tolerance = %.3g", r->tolerance)
-                            : text_print("dt = %.4g", r->dt);
+                            : text_print("dt = %.6g", r->dt);
 }
 
 static void best_words(const costs *c, size_t first, size_t last, list *words) {

@@ -2,6 +2,8 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study.h"
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 static int floor_of(int k, int count) {
     return k >= 0 ? k / count : -((-k + count - 1) / count);
@@ -15,27 +17,22 @@ static double shortened(const double thousandths[], int count, int k) {
     return power < 0 ? digit / pow(10, -power) : digit * pow(10, power);
 }
 
-double grid_dt(int k) {
+double grid_dt(double unit, int k) {
     /* Each fourth is Renard's, but for 3.2 and 6.4, so that most are doubled
        in GRID_STRIDE. */
     static const double digits[] = {
         1000, 950, 900, 850, 800, 760, 720, 680, 640, 600, 560, 530, 500, 475,
         450,  420, 400, 380, 360, 340, 320, 300, 280, 265, 250, 240, 225, 210,
         200,  190, 180, 170, 160, 150, 140, 132, 125, 118, 112, 106};
-    return shortened(digits, 40, k);
+    char text[32];
+    snprintf(text, sizeof text, "%.6g", unit * shortened(digits, 40, k));
+    return strtod(text, NULL);
 }
 
 double grid_tolerance(int k) {
     static const double digits[] = {1000, 850, 700, 600, 500, 400,
                                     320,  250, 200, 170, 140, 120};
     return shortened(digits, 12, k);
-}
-
-int grid_dt_place(double dt) {
-    int k = (int)floor(-40 * log10(dt)) - 3;
-    while (grid_dt(k) > dt * (1 + 1e-9))
-        k++;
-    return k;
 }
 
 double grid_between(const double dt[2], const double error[2], double target) {

@@ -32,7 +32,8 @@ row *recommend_chosen(const recommendation *, const study *);
 /* The same of a study that counts, else NULL. */
 row *recommend_keeps(const recommendation *, const study *);
 /* The study that took least time, of those that keep the target, were timed and
-   are not taken; NULL: there is none. */
+   are not taken; NULL: there is none.  By the shortest times, which other work of the
+   machine lengthens least; where these are alike, one without drift, of least work. */
 study *recommend_next_best(const recommendation *, const bool taken[]);
 /* Times what may be an answer once; the best ones again. */
 void recommend_time_once(recommendation *);

@@ -115,13 +115,26 @@ void recommend_time_once(recommendation *a) {
     free(found);
 }
 
+/* Of two that take as long: without drift, or with less work. */
+static bool is_preferred(const row *r, const row *to) {
+    bool drifts = row_drifts(r), other = row_drifts(to);
+    return drifts == other ? r->work < to->work : other;
+}
+
 study *recommend_next_best(const recommendation *a, const bool taken[]) {
+    static const double alike = 1.1; /* of times, which noise may make */
     study *best = NULL;
     double least = INFINITY;
     for (size_t i = 0; i < a->count; i++) {
         const row *r = taken[i] ? NULL : recommend_keeps(a, &a->study[i]);
-        if (r && r->seconds < least)
-            least = r->seconds, best = &a->study[i];
+        if (r)
+            least = fmin(least, r->fastest);
+    }
+    for (size_t i = 0; i < a->count; i++) {
+        const row *r = taken[i] ? NULL : recommend_keeps(a, &a->study[i]);
+        if (r && r->fastest <= alike * least &&
+            (!best || is_preferred(r, recommend_keeps(a, best))))
+            best = &a->study[i];
     }
     return best;
 }
@@ -154,8 +167,8 @@ static size_t list_best(const recommendation *a, double factor, bool gradients,
     for (size_t i = 0; i < a->count; i++)
         taken[i] = gradients && !study_takes_gradients(&a->study[i]);
     for (study *l; count < most && (l = recommend_next_best(a, taken));) {
-        if (count && recommend_keeps(a, l)->seconds >
-                         factor * recommend_keeps(a, found[0])->seconds)
+        if (count && recommend_keeps(a, l)->fastest >
+                         factor * recommend_keeps(a, found[0])->fastest)
             break;
         taken[l - a->study] = true;
         found[count++] = l;
@@ -211,18 +224,23 @@ static void look_beyond(recommendation *a) {
     }
 }
 
-/* Medians for those that may win. */
-void recommend_time_best(recommendation *a) {
-    enum { FEW = 24, USUAL = 9 };
-    static const double factor = 1.7;
+static void time_within(recommendation *a, double factor, size_t rounds) {
+    enum { FEW = 24 };
     study *found[FEW];
     row *level[FEW];
     size_t count = list_best(a, factor, false, found, FEW);
     size_t repeats = a->search.repeats;
     for (size_t i = 0; i < count; i++)
         level[i] = recommend_keeps(a, found[i]);
-    rows_time(&a->search.plan, level, count, repeats ? repeats : USUAL,
+    rows_time(&a->search.plan, level, count, repeats ? repeats : rounds,
               repeats > 0);
+}
+
+/* Times those that may win, and more often those that may be the first of them. */
+void recommend_time_best(recommendation *a) {
+    time_within(a, 1.7, 9);
+    if (!a->search.repeats)
+        time_within(a, 1.15, 25);
 }
 
 void recommend_take_gradients(recommendation *a, const options *o) {

@@ -47,7 +47,7 @@ static void show(const recommendation *a, const study *l, const char *what,
     table_text(t, what);
     table_text(t, r->integrator);
     table_text(t, study_takes_gradients(l) ? r->gradient : NULL);
-    table_shown(t, "%.4g", r->dt);
+    table_shown(t, "%.6g", r->dt);
     table_shown(t, "%.1e", study_error(r));
     if (has_states(a))
         state_show(t, &a->search.plan, r);
@@ -214,7 +214,7 @@ static void answer_words(const recommendation *a, const options *o,
     char *line = command_line(a, o, r);
     bool gradients = study_takes_gradients(a->best);
     list_print(words,
-               "Take %s%s%s%s at %s = %.4g: the largest %s "
+               "Take %s%s%s%s at %s = %.6g: the largest %s "
                "error over the whole run is %.1e, of the %.1e allowed.",
                r->integrator, gradients ? " with the " : "",
                gradients ? r->gradient : "", gradients ? " gradient" : "",
@@ -232,17 +232,17 @@ static void answer_words(const recommendation *a, const options *o,
     if (a->second)
         list_print(words, "%s, the runner-up, takes %.2f times as long.",
                    a->second->integrator,
-                   recommend_chosen(a, a->second)->seconds / r->seconds);
+                   recommend_chosen(a, a->second)->fastest / r->fastest);
     if (a->alone && a->alone != a->best && a->alone != a->second)
         list_print(words,
                    "From values of H alone %s with %s takes %.2f times as "
                    "long.",
                    a->alone->integrator, a->alone->gradient,
-                   recommend_chosen(a, a->alone)->seconds / r->seconds);
+                   recommend_chosen(a, a->alone)->fastest / r->fastest);
     if (a->steady && a->steady != a->best)
         list_print(words, "Without drift %s takes %.2f times as long.",
                    a->steady->integrator,
-                   recommend_chosen(a, a->steady)->seconds / r->seconds);
+                   recommend_chosen(a, a->steady)->fastest / r->fastest);
     list_print(words, "%zu runs were tried.", a->search.runs);
     list_add(words, " ");
     list_add(words, line);

@@ -40,7 +40,8 @@ search search_begin(const plan *p, const options *o, double budget) {
                 .seconds = o->search.budget > 0 ? budget : most_seconds,
                 .started = cpu_seconds(),
                 .compiled = seconds_of_children(),
-                .landing = grid_dt(grid_dt_place(8 * plan_longest_dt(p)))};
+                .unit = plan_longest_dt(p)};
+    s.landing = grid_dt(8 * s.unit, 0);
     s.plan.screening = true;
     s.plan.by_state = o->search.by || o->observable;
     s.plan.work_limit =
@@ -48,7 +49,7 @@ search search_begin(const plan *p, const options *o, double budget) {
     if (o->dt.count) {
         s.dt = ordered(p->dt, s.dts = p->dts);
         s.tolerance = ordered(p->tolerance, s.tolerances = p->tolerances);
-        s.landing = plan_longest_dt(p);
+        s.landing = s.unit;
     }
     return s;
 }

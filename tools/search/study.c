@@ -42,8 +42,10 @@ double study_error(const row *r) {
     return r->ran && isfinite(error) ? error : INFINITY;
 }
 
+/* The scene's own is 1. */
 static double grid_step(const study *l, int k) {
-    return nevh_integrator_adaptive(l->scheme) ? grid_tolerance(k) : grid_dt(k);
+    return nevh_integrator_adaptive(l->scheme) ? grid_tolerance(k)
+                                               : grid_dt(1, k);
 }
 
 static void set_step(const search *s, row *r, int k) {
@@ -51,7 +53,7 @@ static void set_step(const search *s, row *r, int k) {
         r->dt = s->landing;
         r->tolerance = s->dt ? s->tolerance[k] : grid_tolerance(k);
     } else {
-        r->dt = s->dt ? s->dt[k] : grid_dt(k);
+        r->dt = s->dt ? s->dt[k] : grid_dt(s->unit, k);
     }
 }
 
@@ -115,7 +117,7 @@ static bool is_usable(const study *l, size_t i) {
 
 bool study_fits_steps(const search *s, int k) {
     static const double least = 8;
-    return grid_dt(k) * least <= s->plan.t_end - s->plan.run->t_start;
+    return grid_dt(s->unit, k) * least <= s->plan.t_end - s->plan.run->t_start;
 }
 
 /* To coarser ones, of which only those that are usable stay, as long as they
@@ -177,7 +179,7 @@ static bool keeps_at_any_step(search *s, const study *l) {
 /* The scene's dt is one for schemes of order 2 to 4. */
 static int first_place(const search *s, const study *l) {
     int order = nevh_integrator_order(l->scheme);
-    int k = grid_dt_place(plan_longest_dt(&s->plan));
+    int k = 0;
     for (int coarser = order >= 8 ? 2 : order >= 6; coarser; coarser--)
         if (study_fits_steps(s, k - GRID_STRIDE))
             k -= GRID_STRIDE;
@@ -250,9 +252,10 @@ static size_t count_level(const study *l) {
 static bool is_level(const study *l) {
     static const double small = 1e-11, usual = 1e-2;
     size_t count = count_level(l);
+    size_t chance = l->level[0].tolerance > 0; /* as outputs cut its steps */
     double last = study_error(&l->level[l->count - 1]);
     double first = study_error(&l->level[0]);
-    return last <= rounding || (count > 0 && last < small) ||
+    return last <= rounding || (count > chance && last < small) ||
            (count > 1 && last < 0.1 * first) || (count > 2 && last < usual);
 }
 

@@ -11,11 +11,10 @@ enum {
     GRID_STRIDE = 12, /* a factor of about 2 in dt, of 10 in tolerance */
     GRID_COARSE = 4   /* of 1.25 in dt, of 2 in tolerance */
 };
-/* Finer with k: forty a decade, 1 at k = 0; tolerances twelve a decade. */
-double grid_dt(int k);
+/* Finer with k: forty a decade, `unit` at k = 0, in six digits; tolerances twelve a
+   decade, 1 at k = 0. */
+double grid_dt(double unit, int k);
 double grid_tolerance(int k);
-/* The coarsest k whose step is not longer than dt. */
-int grid_dt_place(double dt);
 /* The step at which a line through two points, on logarithmic axes, has that error. */
 double grid_between(const double dt[2], const double error[2], double target);
 /* The factor of work for one digit more: the slope of a line through log work over
@@ -54,6 +53,7 @@ typedef struct {
     double spent;
     double started;         /* seconds */
     double compiled;        /* seconds of compilers until then */
+    double unit;            /* of steps: the scene's, in its unit of time */
     double landing;         /* dt of adaptive schemes */
     double *dt, *tolerance; /* coarse to fine; NULL: those of the grid */
     size_t dts, tolerances;
