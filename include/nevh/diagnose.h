@@ -151,7 +151,8 @@ typedef struct {
                  the motion
    max > limit   UNSTABLE for theory LOSES, or beyond all measure; else, once
                  times >= 16, BOUNDED where the error comes back and is level,
-                 else UNSTABLE
+                 UNDECIDED where a drive of OPEN has brought more energy than
+                 the error and relative to that it is level, else UNSTABLE
    max at rounding: BOUNDED, or where it grows RANDOM_WALK, once times >= 16;
                  never DRIFTS; UNDECIDED above limit, and of LOSES: it hides more
    LOSES         DRIFTS where the slope is above four times its error, or the

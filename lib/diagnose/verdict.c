@@ -58,6 +58,14 @@ static bool is_carried(const nevh_energy_report *r) {
            after <= fmin(growth_allowed * before, small);
 }
 
+/* Above the energies at the start, but level relative to those that a drive has brought
+   since. */
+static bool is_driven_there(const nevh_energy_report *r) {
+    static const double level = 1.25, some = 1.5;
+    return r->theory == NEVH_THEORY_OPEN && r->max <= r->met &&
+           r->grown > some && r->relative[1] <= fmin(1, level * r->relative[0]);
+}
+
 /* An error that large comes back where the orbit is still of use. */
 static nevh_verdict judge_large(const nevh_energy_report *r, double times) {
     static const double hopeless = 1e6, much = 10;
@@ -68,7 +76,9 @@ static nevh_verdict judge_large(const nevh_energy_report *r, double times) {
     if (times < (huge ? 2 * lasted : lasted))
         return NEVH_UNDECIDED;
     bool level = huge ? r->max <= 1.05 * r->early : is_flat(r, 1.25);
-    return returns && level ? NEVH_BOUNDED : NEVH_UNSTABLE;
+    if (returns && level)
+        return NEVH_BOUNDED;
+    return is_driven_there(r) ? NEVH_UNDECIDED : NEVH_UNSTABLE;
 }
 
 /* Rounding beyond the limit hides what the scheme does. */

@@ -179,6 +179,28 @@ TEST(pulled_along) {
     ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, INFINITY), NEVH_UNSTABLE);
 }
 
+/* Energies that have doubled, and an error below them; no error of a run whose
+   energies are those of the start, nor one that grows faster. */
+TEST(lifted_above_the_start) {
+    nevh_energy_report r = {.samples = 721,
+                            .max = 1.5,
+                            .first_fifth = 0.67,
+                            .last_fifth = 1.5,
+                            .limit = 1,
+                            .met = 2,
+                            .rate = {1.1, 0.14, -0.03},
+                            .early = 0.67,
+                            .grown = 2,
+                            .relative = {0.67, 0.76}};
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, 16), NEVH_UNDECIDED);
+    ck_assert_int_eq(judge(r, NEVH_THEORY_KEEPS, 16), NEVH_UNSTABLE);
+    r.relative[0] = 0.2;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, 16), NEVH_UNSTABLE);
+    r.relative[0] = 0.67;
+    r.grown = 1;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, 16), NEVH_UNSTABLE);
+}
+
 /* A walk that leans to one side is no drift where theory expects none. */
 TEST(leaning_walk) {
     nevh_energy_report r = {.samples = 20000,
