@@ -115,7 +115,7 @@ void recommend_time_once(recommendation *a) {
     free(found);
 }
 
-/* Of two that take as long: without drift, or with less work. */
+/* True if it is the better of two that take as long: no drift, or less work. */
 static bool is_preferred(const row *r, const row *to) {
     bool drifts = row_drifts(r), other = row_drifts(to);
     return drifts == other ? r->work < to->work : other;
