@@ -386,7 +386,8 @@ double nevh_energy_error(const nevh_energy *e, size_t lane) {
 static double rounding_of(const nevh_energy *e, size_t lane, double scale) {
     double each = fmax(DBL_EPSILON, e->noise[lane] / 16);
     double walk = 4 * each * sqrt((double)e->steps[lane]);
-    return (16 * DBL_EPSILON + walk) * e->largest[lane] / scale;
+    return (16 * DBL_EPSILON + walk) * e->largest[lane] / scale +
+           DBL_MIN / scale; /* products of which underflow */
 }
 
 nevh_energy_report nevh_energy_result(const nevh_energy *e, size_t lane) {

@@ -64,6 +64,11 @@ for f in 1 1e-9 1e-100; do
     cmp -s $work/1 $work/$f || { fails "f = $f"; diff $work/1 $work/$f; }
 done
 
+# Where H is below the least normal double nothing is known of its error.
+scene 0 0 0 "x = 1e-160" "K = p_x^2/2;V = x^2/2"
+told >$work/told
+grep -q '^verlet .* undecided ' $work/told || { fails "1e-160"; cat $work/told; }
+
 # At pi/2 a pendulum at rest has no energy but rounding.
 scene 0 0 0 "x = pi/2" "K = p_x^2/2;V = -cos(x)"
 told >$work/told

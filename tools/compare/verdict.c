@@ -1,6 +1,7 @@
 /* nevh compare: the table in words.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "verdict_private.h"
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -204,7 +205,8 @@ static void large_error_words(const plan *p, const row rows[], size_t count,
     for (size_t i = 0; i < count; i++) {
         const row *r = &rows[i];
         bool rounded = r->energy.max <= r->energy.rounding;
-        bool hidden = rounded && verdict_is(r, NEVH_UNDECIDED);
+        bool hidden = rounded && verdict_is(r, NEVH_UNDECIDED) &&
+                      r->energy.scale >= DBL_MIN;
         if (!(verdict_is(r, NEVH_BOUNDED) || hidden) || !(r->energy.max > 1))
             continue;
         char *name = name_of(rows, count, r), *place = step_of(p, r);

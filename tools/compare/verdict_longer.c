@@ -1,6 +1,7 @@
 /* nevh compare: what runs that are continued say of rows.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "verdict_private.h"
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -73,7 +74,12 @@ void verdict_open_words(const plan *p, const row rows[], size_t count,
     const nevh_energy_report *e = r->followed > 0 ? &r->longer : &r->energy;
     char *subject = verdict_subject(p, rows, count, r);
     char *until = r->followed > 0 ? verdict_until(p, r) : NULL;
-    if (nevh_energy_passes_over(e))
+    if (e->scale < DBL_MIN)
+        list_print(words,
+                   "%s: H is about %.1g, and its terms underflow: take units "
+                   "in which it is larger.",
+                   subject, e->scale);
+    else if (nevh_energy_passes_over(e))
         list_print(words,
                    "%s: H changes within a step, and the energy error, up to "
                    "%.1e, is that of steps which pass over the change, not "
