@@ -339,6 +339,7 @@ step_texts = integrators/kernels/splitting_step.h \
 	lib/native/steps/implicit_driver.h \
 	lib/native/steps/implicit_orbit.h \
 	lib/native/steps/implicit_lanes.h \
+	lib/native/steps/steps_call.h \
 	lib/native/steps/entry.h \
 	lib/native/steps/compiled_formulas.h \
 	lib/native/steps/formula_needs.h \

@@ -74,15 +74,13 @@ const nevh__watched *nevh__ensemble_watched(const nevh_ensemble *e) {
     return e->watch ? &e->watch->is : NULL;
 }
 
-bool nevh__ensemble_watch_begin(nevh_ensemble *e) {
+int nevh__ensemble_watch_begin(nevh_ensemble *e) {
     nevh__watch *w = e->watch;
     const nevh__native *native = e->stepper->work.native;
-    if (!w)
-        return true;
-    if (!native || !native->watches) {
+    if (!w || !native || !native->watches) {
         nevh__ensemble_watch_free(w);
         e->watch = NULL;
-        return true;
+        return NEVH_OK;
     }
     size_t size = e->n * e->width, most = MOST_NUMBERS / (w->rows * e->width);
     w->most = most > MOST_STEPS ? MOST_STEPS : most < 4 ? 4 : most;
@@ -90,11 +88,11 @@ bool nevh__ensemble_watch_begin(nevh_ensemble *e) {
                                 e->stepper->rows * e->width,
                             sizeof *w->values);
     if (!w->values)
-        return false;
+        return nevh__no_memory(&e->report);
     w->q = w->values + (w->most + 2) * w->rows * e->width;
     w->p = w->q + size;
     w->memory = w->p + size;
-    return true;
+    return NEVH_OK;
 }
 
 void nevh__ensemble_watch_free(nevh__watch *w) {
@@ -159,9 +157,15 @@ static void turn_to(nevh_ensemble *e, size_t steps) {
 /* Steps. */
 
 static size_t run(nevh_ensemble *e, size_t from, size_t done, size_t steps) {
-    return nevh__native_watch(&e->stepper->work, e->options.t_start, e->h,
-                              from + done, steps, e->q, e->p,
-                              row_at(e, 0, (int)done + 1));
+    return nevh__native_watch(
+        &e->stepper->work,
+        (nevh__steps_call){.t0 = e->options.t_start,
+                           .h = e->h,
+                           .from = from + done,
+                           .steps = steps,
+                           .q = e->q,
+                           .p = e->p,
+                           .room = row_at(e, 0, (int)done + 1)});
 }
 
 /* The state before the last is looked back to.  Returns how many there are: where it is

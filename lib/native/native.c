@@ -423,9 +423,11 @@ void nevh__native_plan(nevh_work *w, const nevh__watched *watched,
 
 /* The text of what is to be compiled; NULL: nothing is. */
 static char *text_to_build(nevh_work *w) {
+    const char *cache = w->options->native_cache;
     nevh__writer text = {0};
     char *found = NULL;
-    if (w->native || w->options->native != NEVH_NATIVE_AUTO || obstacle(w))
+    if ((cache && !*cache) || w->native ||
+        w->options->native != NEVH_NATIVE_AUTO || obstacle(w))
         return NULL;
     if (write_text(&text, w) && compiling_pays(w, strlen(text.text))) {
         found = text.text;
@@ -449,8 +451,7 @@ void nevh__native_prepare(nevh_work *const all[], size_t count,
     double seconds = 0;
     const char *cache = count ? all[0]->options->native_cache : NULL;
     char problem[NEVH__WHY_NATIVE] = "";
-    bool keeps = !(cache && !*cache);
-    for (size_t i = 0; texts && of && keeps && i < count; i++) {
+    for (size_t i = 0; texts && of && i < count; i++) {
         char *text = text_to_build(all[i]);
         of[i] = text ? place_in(texts, found, text) : SIZE_MAX;
         if (text)

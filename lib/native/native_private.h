@@ -9,23 +9,15 @@
 #define NEVH_NATIVE_PRIVATE_H
 
 #include "kernels/adaptive_step.h"
+#include "native/steps/steps_call.h"
 #include "native/writer_private.h"
 #include "work/work_private.h"
 #include <nevh/extend.h>
 #include <nevh/run.h>
 #include <stdatomic.h>
 
-/* Takes `steps` steps, or none, and returns how many of them can be taken.
-   counted  of steps that take as many as can be taken are added: of implicit
-            ones sweeps of each orbit, how often noise was asked for, and sweeps
-            evaluated, also of orbits that are done; of those that adapt slopes at
-            states, and trials */
-typedef size_t (*nevh__compiled_steps)(const double numbers[], double weights[],
-                                       double times[], size_t operations,
-                                       double t0, double h, size_t from,
-                                       size_t steps, double q[], double p[],
-                                       double memory[], size_t counted[3],
-                                       double room[]);
+/* Takes all steps, or none, and returns how many of them can be taken. */
+typedef size_t (*nevh__compiled_steps)(const nevh__steps_call *);
 
 /* Steps in use, which appear once a compiler in the background is done. */
 typedef _Atomic(nevh__compiled_steps) nevh__steps_at_work;
@@ -133,11 +125,10 @@ void nevh__native_free(nevh__native *);                /* NULL is allowed */
 size_t nevh__native_run(nevh_work *, double t0, double h, size_t from,
                         size_t steps, double q[], double p[]);
 
-/* The same, and writes what is watched after step i of them to values + i rows width,
-   a row each; 0 where nothing is watched, or was not yet compared. */
-size_t nevh__native_watch(nevh_work *, double t0, double h, size_t from,
-                          size_t steps, double q[], double p[],
-                          double values[]);
+/* The same, by the times, states and room of a call, where it writes what is watched
+   after step i of them: to room + i rows width, a row each; 0 where nothing is watched,
+   or was not yet compared. */
+size_t nevh__native_watch(nevh_work *, nevh__steps_call);
 
 /* One step, native where it can be. */
 static inline int nevh__native_step(nevh_work *w, double t, double h,

@@ -111,6 +111,7 @@ static void write_compiled_needs(nevh__writer *w, size_t lanes, size_t group) {
         if (forms[i].holds)
             nevh__write_form(w, forms[i].name);
     nevh__write_lines(w, nevh__compiled_needs_text);
+    nevh__write_lines(w, nevh__steps_call_text);
 }
 
 static void write_program_needs(nevh__writer *w, size_t n, bool finite,
@@ -213,7 +214,7 @@ void nevh__write_sums(nevh__writer *w, const nevh__sums_text *sums) {
 static void write_unkept(nevh__writer *w) {
     if (!w->readable)
         nevh__write(w, "enum { KEPT = 0 };\n"
-                       "#define take_first(N, T, t, h, y, lost, kept, room) "
+                       "#define take_first(c, N, y, lost, kept, room) "
                        "((nevh__number){0})\n");
 }
 

@@ -36,14 +36,17 @@ static size_t count_kept(const nevh_work *w) {
     return kept;
 }
 
-static size_t take(const nevh_work *w, double t0, double h, size_t from,
-                   size_t steps, double q[], double p[], size_t counted[3],
-                   double *values) {
+static size_t take(const nevh_work *w, nevh__steps_call *c) {
     const nevh__native *x = w->native;
     nevh__compiled_steps compiled = x->steps;
-    return compiled(x->numbers, x->weights, x->times, x->kicks + x->drifts, t0,
-                    h, from, steps, q, p, w->memory, counted,
-                    x->room ? nevh__aligned(x->room) : values);
+    c->numbers = x->numbers;
+    c->weights = x->weights;
+    c->times = x->times;
+    c->operations = x->kicks + x->drifts;
+    c->memory = w->memory;
+    if (x->room)
+        c->room = nevh__aligned(x->room);
+    return compiled(c);
 }
 
 /* Gradients at stages, and values that told the noise of differences. */
@@ -61,22 +64,24 @@ static void count_sweeps(nevh_work *w, const nevh__native *x,
     }
 }
 
-static size_t take_steps(nevh_work *w, double t0, double h, size_t from,
-                         size_t steps, double q[], double p[], double *values) {
+static size_t take_steps(nevh_work *w, nevh__steps_call c) {
     const nevh__native *x = w->native;
     size_t kept = x->keeps ? count_kept(w) : 0;
     if (kept > 0 && kept < w->width)
         return 0; /* the kernel's step takes those that are missing */
     size_t counted[3] = {0, 0, 0};
-    size_t done = take(w, t0, h, from, steps, q, p, counted, values);
+    c.counted = counted;
+    size_t done = take(w, &c);
     if (x->stages)
         count_sweeps(w, x, counted);
     else if (x->adapts)
         add_counts(w, x, counted[0] + counted[1] * x->kicks,
                    counted[0] * x->first_drifts + counted[1] * x->drifts);
     else {
-        if (done && done < steps) /* nothing has been stored */
-            done = take(w, t0, h, from, done, q, p, counted, values);
+        if (done && done < c.steps) { /* nothing has been stored */
+            c.steps = done;
+            done = take(w, &c);
+        }
         if (done)
             count(w, x, done, kept > 0);
         if (done && x->own_time)
@@ -136,28 +141,20 @@ static void give_back(const before *b, nevh_work *w, double q[], double p[]) {
     w->elapsed = b->elapsed;
 }
 
-/* The kernel takes steps that native ones have led to `native`.
-   returns  how many */
-static size_t repeat(nevh_work *w, double t0, double h, size_t from,
-                     size_t steps, double q[], double p[]) {
-    size_t done = 0;
-    while (done < steps &&
-           !nevh__work_step(w, t0 + (double)(from + done) * h, h, q, p))
-        done++;
-    return done;
-}
-
-static size_t compare(nevh_work *w, before *start, before *native, double t0,
-                      double h, size_t from, size_t steps, double q[],
-                      double p[]) {
+static size_t compare(nevh_work *w, before *start, before *native,
+                      nevh__steps_call c) {
     nevh__native *x = w->native;
+    double *q = c.q, *p = c.p;
     keep(start, w, q, p);
-    size_t done = take_steps(w, t0, h, from, steps, q, p, NULL);
+    size_t done = take_steps(w, c), again = 0;
     if (!done)
         return 0;
     keep(native, w, q, p);
     give_back(start, w, q, p);
-    size_t again = repeat(w, t0, h, from, done, q, p);
+    while (
+        again < done &&
+        !nevh__work_step(w, c.t0 + (double)(c.from + again) * c.h, c.h, q, p))
+        again++;
     x->compared = again == done &&
                   !memcmp(native->numbers, q, w->size * sizeof *q) &&
                   !memcmp(native->numbers + w->size, p, w->size * sizeof *p);
@@ -169,16 +166,15 @@ static size_t compare(nevh_work *w, before *start, before *native, double t0,
 
 /* A compiler may have been told to change digits: few steps of many numbers show
    that, or some of few. */
-static size_t compare_first(nevh_work *w, double t0, double h, size_t from,
-                            size_t steps, double q[], double p[]) {
+static size_t compare_first(nevh_work *w, nevh__steps_call c) {
     enum { MANY = 1000, SOME = 8 };
     size_t most = w->size > MANY ? 1 : SOME, done = 0;
     before start, native;
     bool made = make_before(&start, w);
     made = make_before(&native, w) && made;
+    c.steps = c.steps < most ? c.steps : most;
     if (made)
-        done = compare(w, &start, &native, t0, h, from,
-                       steps < most ? steps : most, q, p);
+        done = compare(w, &start, &native, c);
     free_before(&start);
     free_before(&native);
     return done;
@@ -189,16 +185,15 @@ size_t nevh__native_run(nevh_work *w, double t0, double h, size_t from,
     const nevh__native *x = w->native;
     if (!x->steps || x->differs || !nevh__field_at_hand(w->field))
         return 0;
-    return x->compared ? take_steps(w, t0, h, from, steps, q, p, NULL)
-                       : compare_first(w, t0, h, from, steps, q, p);
+    nevh__steps_call c = {
+        .t0 = t0, .h = h, .from = from, .steps = steps, .q = q, .p = p};
+    return x->compared ? take_steps(w, c) : compare_first(w, c);
 }
 
-size_t nevh__native_watch(nevh_work *w, double t0, double h, size_t from,
-                          size_t steps, double q[], double p[],
-                          double values[]) {
+size_t nevh__native_watch(nevh_work *w, nevh__steps_call c) {
     const nevh__native *x = w->native;
     return x && x->steps && x->watches && x->compared &&
                    nevh__field_at_hand(w->field)
-               ? take_steps(w, t0, h, from, steps, q, p, values)
+               ? take_steps(w, c)
                : 0;
 }

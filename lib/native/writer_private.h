@@ -131,6 +131,7 @@ extern const char *const nevh__implicit_driver_text[];
 extern const char *const nevh__implicit_orbit_text[];
 extern const char *const nevh__implicit_lanes_text[];
 extern const char *const nevh__tao_driver_text[];
+extern const char *const nevh__steps_call_text[];
 extern const char *const nevh__entry_text[];
 extern const char *const nevh__runge_kutta_driver_text[];
 extern const char *const nevh__nystrom_driver_text[];

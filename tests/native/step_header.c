@@ -16,6 +16,7 @@
 #include "native/steps/loop_needs.h"
 #endif
 #include "native/steps/compiled_needs.h"
+#include "native/steps/steps_call.h"
 #define TABLE(b) (N + (b))
 #else
 #include <math.h>
@@ -42,10 +43,8 @@ static const double SCALES[4] = {1, 1, 1, 1};
 #else
 #define NEVH__COMPILED(...) __VA_ARGS__
 #define SCALES              (N + 7)
-size_t nevh_native_steps(const double *N, double *W, double *T,
-                         size_t operations, double t0, double h, size_t from,
-                         size_t steps, double *Q, double *P, double *M,
-                         size_t *counted, double *room);
+#include "native/steps/steps_call.h"
+size_t nevh_native_steps(const nevh__steps_call *);
 #endif
 
 #ifdef FAMILY_IMPLICIT
@@ -81,23 +80,21 @@ static inline double take_step(double t, double h, double *y, double *lost,
     return t + h * y[0];
 }
 #else
-size_t nevh_native_steps(const double *N, double *W, double *T,
-                         size_t operations, double t0, double h, size_t from,
-                         size_t steps, double *Q, double *P, double *M,
-                         size_t *counted, double *room);
-static inline nevh__number take_step(const double *N, double *W, double *T,
-                                     size_t operations, double t, double h,
-                                     nevh__number *y, nevh__number *lost,
-                                     nevh__number *kept, nevh__number *room) {
-    (void)N, (void)W, (void)T, (void)operations, (void)room, (void)lost;
-    y[0] += t + h;
+size_t nevh_native_steps(const nevh__steps_call *);
+static inline nevh__number take_step(const nevh__steps_call *c, const double *N,
+                                     double t, nevh__number *y,
+                                     nevh__number *lost, nevh__number *kept,
+                                     nevh__number *room) {
+    (void)N, (void)room, (void)lost;
+    y[0] += t + c->h;
     return kept[0] - kept[0];
 }
-static inline nevh__number take_first(const double *N, const double *T,
-                                      double t, double h, const nevh__number *y,
+static inline nevh__number take_first(const nevh__steps_call *c,
+                                      const double *N, const nevh__number *y,
                                       const nevh__number *lost,
                                       nevh__number *kept, nevh__number *room) {
-    (void)N, (void)T, (void)room, (void)lost;
+    double t = c->t0, h = c->h;
+    (void)N, (void)room, (void)lost;
     kept[0] = y[0] + t + h;
     return kept[0] - kept[0];
 }
@@ -304,7 +301,7 @@ static size_t advance(double t0, double h, size_t from, size_t steps, double *q,
 #if defined STANDS_ALONE && !defined NEVH__ADAPTS && !defined FAMILY_FORMULAS
 #ifndef FAMILY_SPLITTING
 enum { KEPT = DOF };
-#define take_first(N, T, t, h, y, lost, kept, room) ((nevh__number){0})
+#define take_first(c, N, y, lost, kept, room) ((nevh__number){0})
 #endif
 #if defined NEVH__LOOPS && !defined NEVH__FOR_READERS
 #include "native/steps/long_driver.h"

@@ -80,10 +80,10 @@ exits 0 compare pendulum --set g=9.7 --gradient exact --t-end 1600 \
 lacks 'native: '
 exits 0 cost pendulum $long --integrators verlet,gauss8 --dt 0.1,0.2
 has '^native: all steps are compiled$'
-exits 0 recommend pendulum $long --integrators gauss8 --energy-error 1e-3 --dt 0.2
+exits 0 recommend pendulum $long --integrators gauss8 --energy-error 1e-3 --dt 0.1
 has '^native: all steps are compiled$'
 exits 0 recommend pendulum $long --integrators gauss8 --energy-error 1e-3 \
-    --dt 0.2 --native never
+    --dt 0.1 --native never
 lacks 'native: '
 
 # Members that differ in numbers of H go side by side, but not all by compiled steps.
@@ -144,7 +144,7 @@ done
 rm -rf $cache
 for what in 'compare pendulum --integrators euler,gauss8 --dt 0.1' \
     'cost pendulum --integrators verlet,gauss8 --dt 0.1,0.2' \
-    'recommend pendulum --integrators gauss8 --energy-error 1e-3 --dt 0.2'; do
+    'recommend pendulum --integrators gauss8 --energy-error 1e-3 --dt 0.1'; do
     CC=no-such-compiler
     export CC
     exits 0 $what $long

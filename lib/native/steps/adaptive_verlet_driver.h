@@ -55,6 +55,28 @@ NEVH__INLINE int nevh__leap_account(const nevh__leap *x, bool of_q, double t,
    the density's. */
 enum { FORCE_AT = 2 * DOF, BEGUN_AT = 3 * DOF, UNIT_AT, DENSITY_AT, CHANGE_AT };
 
+/* The new state, with digits that sums lose, and the force there; false: it is not
+   finite, and nothing has changed. */
+NEVH__INLINE bool add_changes(const nevh__leap *x, double *Q, double *P,
+                              double *M) {
+    double bad = 0;
+    NEVH__EACH(k, 1, DOF) {
+        x->q[k] = Q[k] + (x->dq[k] + M[k]);
+        x->p[k] = P[k] + (x->dp[k] + M[DOF + k]);
+        bad += (x->q[k] - x->q[k]) + (x->p[k] - x->p[k]);
+    }
+    if (bad != 0)
+        return false;
+    NEVH__EACH(k, 1, DOF) {
+        M[k] = nevh__roundoff(x->q[k], Q[k], x->dq[k] + M[k]);
+        M[DOF + k] = nevh__roundoff(x->p[k], P[k], x->dp[k] + M[DOF + k]);
+        Q[k] = x->q[k];
+        P[k] = x->p[k];
+        M[FORCE_AT + k] = x->force[k];
+    }
+    return true;
+}
+
 /* A step of h times what the density says.  Returns whether it could be
    taken, and sets the time that it takes. */
 NEVH__INLINE bool take_step(NEVH__COMPILED(const double *N, ) double t,
@@ -66,10 +88,7 @@ NEVH__INLINE bool take_step(NEVH__COMPILED(const double *N, ) double t,
     struct nevh__leap_owner owner = {&bad NEVH__COMPILED(, N)};
     nevh__leap x = {DOF,   UNIT_Q, UNIT_P, M,    q,           p,     force,
                     speed, dq,     dp,     pair, pair_slopes, &owner};
-#ifndef NEVH__FOR_READERS
-    if (M[BEGUN_AT] == 0)
-        return false;
-#endif
+    NEVH__COMPILED(if (M[BEGUN_AT] == 0) return false;)
     nevh__leap_place(&x, Q, P, M + FORCE_AT);
     nevh__leap_slopes(&x, t, M[BEGUN_AT] == 0 ? force : NULL, speed);
 #ifdef NEVH__FOR_READERS
@@ -91,28 +110,13 @@ NEVH__INLINE bool take_step(NEVH__COMPILED(const double *N, ) double t,
         return false;
     nevh__leap_take(&x, t, *length, Q, P);
 #ifdef NEVH__REVERSIBLE
-#ifndef NEVH__FOR_READERS
     /* The kernel counts no slopes of a change of 0 where nothing moves. */
-    if (!(nevh__leap_size(&x) > 0))
-        return false;
-#endif
+    NEVH__COMPILED(if (!(nevh__leap_size(&x) > 0)) return false;)
     nevh__leap_change(&x, t + *length, c.unit, &c.change);
     c.density += h / 2 * c.change;
 #endif
-    NEVH__EACH(k, 1, DOF) {
-        q[k] = Q[k] + (dq[k] + M[k]);
-        p[k] = P[k] + (dp[k] + M[DOF + k]);
-        bad += (q[k] - q[k]) + (p[k] - p[k]);
-    }
-    if (bad != 0)
+    if (bad != 0 || !add_changes(&x, Q, P, M))
         return false;
-    NEVH__EACH(k, 1, DOF) {
-        M[k] = nevh__roundoff(q[k], Q[k], dq[k] + M[k]);
-        M[DOF + k] = nevh__roundoff(p[k], P[k], dp[k] + M[DOF + k]);
-        Q[k] = q[k];
-        P[k] = p[k];
-        M[FORCE_AT + k] = force[k];
-    }
     M[DENSITY_AT] = c.density;
     M[CHANGE_AT] = c.change;
     return true;
@@ -184,13 +188,10 @@ static size_t advance(double *t, double t_end, double h, size_t steps,
 }
 #else
 /* Takes one step, whose length goes to T. */
-size_t nevh_native_steps(const double *restrict N, double *restrict W,
-                         double *restrict T, size_t operations, double t0,
-                         double h, size_t from, size_t steps,
-                         double *restrict Q, double *restrict P,
-                         double *restrict M, size_t *counted, double *room) {
-    (void)W, (void)operations, (void)counted, (void)room;
-    return steps == 1 && take_step(N, t0 + (double)from * h, h, Q, P, M, T);
+size_t nevh_native_steps(const nevh__steps_call *c) {
+    return c->steps == 1 &&
+           take_step(c->numbers, c->t0 + (double)c->from * c->h, c->h, c->q,
+                     c->p, c->memory, c->times);
 }
 #endif
 

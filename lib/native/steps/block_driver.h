@@ -37,66 +37,52 @@ static size_t advance(double t0, double h, size_t from, size_t steps, double *q,
     return done;
 }
 #else
-size_t nevh_native_steps(const double *restrict N, double *restrict W,
-                         double *restrict T, size_t operations, double t0,
-                         double h, size_t from, size_t steps,
-                         double *restrict Q, double *restrict P,
-                         double *restrict M, size_t *counted, double *room) {
-    (void)counted, (void)room;
-    /* room: where to write what is watched after each step; or NULL */
+/* copy(mine, theirs) for each number of the blocks and of what is handed over. */
+#define NEVH__EACH_NUMBER(copy)                                                \
+    for (int b = 0; b < BLOCKS; b++) {                                         \
+        NEVH_UNROLL for (size_t k = 0; k < DOF; k++) {                         \
+            copy(y[b][k], AT(Q, k, b));                                        \
+            copy(y[b][DOF + k], AT(P, k, b));                                  \
+        }                                                                      \
+        NEVH_UNROLL for (size_t k = 0; k < 2 * DOF; k++) {                     \
+            copy(lost[b][k], AT(M, k, b));                                     \
+        }                                                                      \
+        NEVH_UNROLL for (size_t k = 0; k < KEPT; k++) {                        \
+            copy(kept[b][k], AT(M, 2 * DOF + k, b));                           \
+        }                                                                      \
+    }
+#define NEVH__LOAD(mine, theirs)  mine = theirs
+#define NEVH__STORE(mine, theirs) theirs = mine
+
+size_t nevh_native_steps(const nevh__steps_call *call) {
+    const nevh__steps_call c = *call;
+    const double *restrict N = c.numbers;
+    double *restrict Q = c.q, *restrict P = c.p, *restrict M = c.memory;
     nevh__number y[BLOCKS][2 * DOF], lost[BLOCKS][2 * DOF];
     nevh__number kept[BLOCKS][KEPT + 1];
     double *flags = M + (2 * DOF + KEPT) / GROUP * WIDTH;
     bool has_kept = true;
     size_t done = 0;
-    for (int b = 0; b < BLOCKS; b++) {
-        NEVH__EACH(k, 1, DOF) {
-            y[b][k] = AT(Q, k, b);
-        }
-        NEVH__EACH(k, 1, DOF) {
-            y[b][DOF + k] = AT(P, k, b);
-        }
-        NEVH__EACH(k, 1, 2 * DOF) {
-            lost[b][k] = AT(M, k, b);
-        }
-        NEVH__EACH(k, 1, KEPT) {
-            kept[b][k] = AT(M, 2 * DOF + k, b);
-        }
-    }
+    NEVH__EACH_NUMBER(NEVH__LOAD)
     for (int i = 0; KEPT > 0 && i < WIDTH; i++)
         has_kept &= flags[i] != 0;
     for (int b = 0; KEPT > 0 && !has_kept && b < BLOCKS; b++)
-        if (is_bad(take_first(TABLE(b), T, t0 + (double)from * h, h, y[b],
-                              lost[b], kept[b], NULL)))
+        if (is_bad(take_first(&c, TABLE(b), y[b], lost[b], kept[b], NULL)))
             return 0;
-    for (; done < steps; done++) {
-        double t = t0 + (double)(from + done) * h;
+    for (; done < c.steps; done++) {
+        double t = c.t0 + (double)(c.from + done) * c.h;
         nevh__number bad = {0};
         for (int b = 0; b < BLOCKS; b++)
-            bad += take_step(TABLE(b), W, T, operations, t, h, y[b], lost[b],
-                             kept[b], NULL);
+            bad += take_step(&c, TABLE(b), t, y[b], lost[b], kept[b], NULL);
         if (is_bad(bad))
             return done;
 #ifdef NEVH__WATCHES
-        for (int i = 0; room && i < BLOCKS * GROUP; i++)
+        for (int i = 0; c.room && i < BLOCKS * GROUP; i++)
             watch(N, &y[i / GROUP][i % GROUP * ONE],
-                  room + done * WATCHED * WIDTH + i * LANES);
+                  c.room + done * WATCHED * WIDTH + i * LANES);
 #endif
     }
-    for (int b = 0; b < BLOCKS; b++) {
-        NEVH__EACH(k, 1, DOF) {
-            AT(Q, k, b) = y[b][k];
-        }
-        NEVH__EACH(k, 1, DOF) {
-            AT(P, k, b) = y[b][DOF + k];
-        }
-        NEVH__EACH(k, 1, 2 * DOF) {
-            AT(M, k, b) = lost[b][k];
-        }
-        NEVH__EACH(k, 1, KEPT) {
-            AT(M, 2 * DOF + k, b) = kept[b][k];
-        }
-    }
+    NEVH__EACH_NUMBER(NEVH__STORE)
     for (int i = 0; KEPT > 0 && i < WIDTH; i++)
         flags[i] = 1;
     return done;

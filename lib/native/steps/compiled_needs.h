@@ -22,8 +22,6 @@ typedef size size_t;
 #define NEVH__EACH(i, lanes, size)                                             \
     NEVH_UNROLL for (size_t i = 0; i < (size); i += (lanes))
 #define NEVH__COMPILED(...) __VA_ARGS__
-/* The first arguments of a step. */
-#define NEVH__TABLES const double *N, double *W, double *T, size_t operations,
 /* Rows of a step: on the stack, or where a state is long in the room that it is
    handed; and the last arguments of its slopes. */
 #ifdef NEVH__LOOPS

@@ -4,13 +4,9 @@
 #ifndef NEVH_ENTRY_H
 #define NEVH_ENTRY_H
 
-size_t nevh_native_steps(const double *restrict N, double *restrict W,
-                         double *restrict T, size_t operations, double t0,
-                         double h, size_t from, size_t steps,
-                         double *restrict Q, double *restrict P,
-                         double *restrict M, size_t *counted, double *room) {
-    (void)W, (void)T, (void)operations, (void)room;
-    return advance(N, t0, h, from, steps, Q, P, M, counted);
+size_t nevh_native_steps(const nevh__steps_call *c) {
+    return advance(c->numbers, c->t0, c->h, c->from, c->steps, c->q, c->p,
+                   c->memory, c->counted);
 }
 
 #endif

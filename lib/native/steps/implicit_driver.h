@@ -106,9 +106,9 @@ NEVH__INLINE bool nevh__stage_is_small(const nevh__stage_judged *x,
                           NEVH__STAGE_MARGIN * nevh__stage_noise_level(x));
 }
 
-/* h b_j and -h b_j. */
+/* h, h b_j and -h b_j. */
 typedef struct {
-    double plus[STAGES], minus[STAGES];
+    double h, plus[STAGES], minus[STAGES];
     double to_q[STAGES * NEVH__LANES], to_p[STAGES * NEVH__LANES];
 } step_weights;
 
@@ -145,9 +145,8 @@ NEVH__INLINE nevh__stage_step sweeps_of(sweeps_room *r, const step_weights *w,
 
 /* A step, the includer's; false: it cannot be taken, and nothing has changed. */
 NEVH__INLINE bool
-take_step(NEVH__COMPILED(const double *N, ) double t, double h, double *Q,
-          double *P, double *M,
-          const step_weights *w NEVH__COMPILED(, size_t *counted));
+take_step(NEVH__COMPILED(const double *N, ) double t, double *Q, double *P,
+          double *M, const step_weights *w NEVH__COMPILED(, size_t *counted));
 
 /* Takes up to `steps` steps of h, the first being number `from`, and returns how
    many of them it could take. */
@@ -157,6 +156,7 @@ NEVH__INLINE size_t advance(NEVH__COMPILED(const double *N, ) double t0,
                             double *M NEVH__COMPILED(, size_t *counted)) {
     step_weights w;
     size_t done = 0;
+    w.h = h;
     nevh__stage_split(STAGES, weights, h, w.plus);
     for (size_t j = 0; j < STAGES; j++) {
         w.minus[j] = -w.plus[j];
@@ -166,8 +166,8 @@ NEVH__INLINE size_t advance(NEVH__COMPILED(const double *N, ) double t0,
         }
     }
     while (done < steps &&
-           take_step(NEVH__COMPILED(N, ) t0 + (double)(from + done) * h, h, Q,
-                     P, M, &w NEVH__COMPILED(, counted)))
+           take_step(NEVH__COMPILED(N, ) t0 + (double)(from + done) * h, Q, P,
+                     M, &w NEVH__COMPILED(, counted)))
         done++;
     return done;
 }

@@ -52,71 +52,92 @@ NEVH__INLINE bool add_block(const step_weights *w, block *to) {
     return nevh__sum_lanes(check) == 0;
 }
 
-NEVH__INLINE bool take_block(const double *N, const step_weights *w, double t,
-                             double h, const double *Q, const double *P,
-                             const double *M, block *to, size_t *counted) {
+/* The orbits of a block as they iterate. */
+typedef struct {
+    const double *N;
+    block *to;
+    double t, h;
     sweeps_room r;
-    double products[STRIDE], unknown = 0, level[8];
-    nevh__vector bad = {0};
-    size_t left = 8;
-    bool settled[8];
     nevh__stage_lane lane[8];
-    nevh__stage_progress made[8];
-    struct nevh__stage_owner owner = {N, r.times, &bad};
-    nevh__stage_step x = sweeps_of(&r, w, to->y, to->lost, &owner);
-    x.products = products;
-    nevh__stage_changes changes = {FIRST,    UNKNOWN, r.unit,
-                                   r.before, r.least, r.lowest};
-    for (size_t i = 0; i < 8; i++) {
-        if (M[HOLD_AT * WIDTH + i] > 0)
-            return false;
-        nevh__stage_forget(&lane[i]);
-        r.lowest[i] = INFINITY;
-        level[i] = -1;
-        settled[i] = false;
-    }
-    load_block(N, h, Q, P, M, &r, to);
+    double level[8], unknown;
+    bool settled[8];
+    size_t left, *counted;
+} iteration;
+
+NEVH__INLINE void begin_sweeps(const nevh__stage_step *x,
+                               const nevh__stage_changes *changes,
+                               iteration *it) {
+    block *to = it->to;
     NEVH_LANES(i, STRIDE) {
-        r.times[i] = t + nodes[i / 8] * h;
+        it->r.times[i] = it->t + nodes[i / 8] * it->h;
     }
-    nevh__stage_begin_sweeps(&x, &changes, 8, long_guess, KEPT_STAGES, to->past,
+    nevh__stage_begin_sweeps(x, changes, 8, long_guess, KEPT_STAGES, to->past,
                              PAST * STRIDE);
     for (size_t i = 0; i < 8; i++)
         if (to->steps[i] < PAST)
-            nevh__stage_begin_lane(&x, &changes, i, guess,
+            nevh__stage_begin_lane(x, changes, i, guess,
                                    to->steps[i] > 0 ? STAGES : 0, to->past,
                                    PAST * STRIDE);
-    for (size_t sweeps = 1; left > 0; sweeps++) {
-        counted[2] += left > FEW ? 8 : left;
+}
+
+/* Judges sweep number `sweeps` of orbit i, and keeps its slopes where it is done;
+   false: it does not get on. */
+NEVH__INLINE bool judge_orbit(iteration *it, size_t i, size_t sweeps,
+                              const nevh__stage_progress *made) {
+    struct nevh__stage_judge_owner owner = {
+        it->N, it->to->y + i, it->r.scale + i, it->t,
+        it->h, &it->level[i], &it->unknown,    &it->counted[1]};
+    nevh__stage_judged judged = {0,     true, NOISY, NEWTON, UNKNOWN * STAGES,
+                                 &owner};
+    nevh__stage_state state;
+    if (it->settled[i])
+        return true;
+    if (!(made->change < INFINITY))
+        return false;
+    state = nevh__stage_judge_fixed_point(&judged, &it->lane[i], made);
+    if (state != NEVH__DONE)
+        return state == NEVH__GO_ON && sweeps < NEVH__STAGE_SWEEPS;
+    it->settled[i] = true;
+    it->to->first_change[i] = it->lane[i].first;
+    it->left--;
+    it->counted[0] += sweeps;
+    for (size_t k = i; k < 2 * DOF * STRIDE; k += 8)
+        it->to->slopes[k] = it->r.gradient[k];
+    return true;
+}
+
+NEVH__INLINE bool take_block(iteration *it, const step_weights *w,
+                             const double *Q, const double *P,
+                             const double *M) {
+    double products[STRIDE];
+    nevh__vector bad = {0};
+    nevh__stage_progress made[8];
+    sweeps_room *r = &it->r;
+    struct nevh__stage_owner owner = {it->N, r->times, &bad};
+    nevh__stage_step x = sweeps_of(r, w, it->to->y, it->to->lost, &owner);
+    x.products = products;
+    nevh__stage_changes changes = {FIRST,     UNKNOWN,  r->unit,
+                                   r->before, r->least, r->lowest};
+    for (size_t i = 0; i < 8; i++) {
+        if (M[HOLD_AT * WIDTH + i] > 0)
+            return false;
+        nevh__stage_forget(&it->lane[i]);
+        r->lowest[i] = INFINITY;
+        it->level[i] = -1;
+        it->settled[i] = false;
+    }
+    load_block(it->N, it->h, Q, P, M, r, it->to);
+    begin_sweeps(&x, &changes, it);
+    for (size_t sweeps = 1; it->left > 0; sweeps++) {
+        it->counted[2] += it->left > FEW ? 8 : it->left;
         if (nevh__stage_map(&x, 8))
             return false;
         nevh__stage_compare_sweep(&x, &changes, 8, made);
-        for (size_t i = 0; i < 8; i++) {
-            struct nevh__stage_judge_owner judge_owner = {
-                N, to->y + i, r.scale + i, t,
-                h, &level[i], &unknown,    &counted[1]};
-            nevh__stage_judged judged = {
-                0, true, NOISY, NEWTON, UNKNOWN * STAGES, &judge_owner};
-            nevh__stage_state state;
-            if (settled[i])
-                continue;
-            if (!(made[i].change < INFINITY))
+        for (size_t i = 0; i < 8; i++)
+            if (!judge_orbit(it, i, sweeps, &made[i]))
                 return false;
-            state = nevh__stage_judge_fixed_point(&judged, &lane[i], &made[i]);
-            if (state == NEVH__STUCK ||
-                (state == NEVH__GO_ON && sweeps == NEVH__STAGE_SWEEPS))
-                return false;
-            if (state == NEVH__GO_ON)
-                continue;
-            settled[i] = true;
-            to->first_change[i] = lane[i].first;
-            left--;
-            counted[0] += sweeps;
-            for (size_t k = i; k < 2 * DOF * STRIDE; k += 8)
-                to->slopes[k] = r.gradient[k];
-        }
     }
-    return !is_bad(bad) && unknown == 0 && add_block(w, to);
+    return !is_bad(bad) && it->unknown == 0 && add_block(w, it->to);
 }
 
 NEVH__INLINE void store_block(double h, const block *from, double *Q, double *P,
@@ -146,17 +167,24 @@ NEVH__INLINE void store_block(double h, const block *from, double *Q, double *P,
     }
 }
 
-NEVH__INLINE bool take_step(const double *N, double t, double h, double *Q,
-                            double *P, double *M, const step_weights *w,
-                            size_t *counted) {
+NEVH__INLINE bool take_step(const double *N, double t, double *Q, double *P,
+                            double *M, const step_weights *w, size_t *counted) {
     block next[BLOCKS];
     size_t found[3] = {0, 0, 0};
-    for (size_t b = 0; b < BLOCKS; b++)
-        if (!take_block(TABLE(b), w, t, h, Q + 8 * b, P + 8 * b, M + 8 * b,
-                        &next[b], found))
+    for (size_t b = 0; b < BLOCKS; b++) {
+        iteration it;
+        it.N = TABLE(b);
+        it.to = &next[b];
+        it.t = t;
+        it.h = w->h;
+        it.unknown = 0;
+        it.left = 8;
+        it.counted = found;
+        if (!take_block(&it, w, Q + 8 * b, P + 8 * b, M + 8 * b))
             return false;
+    }
     for (size_t b = 0; b < BLOCKS; b++)
-        store_block(h, &next[b], Q + 8 * b, P + 8 * b, M + 8 * b);
+        store_block(w->h, &next[b], Q + 8 * b, P + 8 * b, M + 8 * b);
     for (size_t i = 0; i < 3; i++)
         counted[i] += found[i];
     return true;

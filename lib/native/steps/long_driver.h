@@ -6,14 +6,10 @@
 #define NEVH_LONG_DRIVER_H
 
 #ifndef NEVH__TAKES_STEPS
-NEVH__INLINE bool take_steps(const double *N, double *W, double *T,
-                             size_t operations, double t0, double h,
-                             size_t from, size_t steps, wide *y, wide *lost,
+NEVH__INLINE bool take_steps(const nevh__steps_call *c, wide *y, wide *lost,
                              wide *kept, wide *room, size_t *done) {
-    (void)steps;
-    double t = t0 + (double)from * h;
-    bool fine =
-        !is_bad(take_step(N, W, T, operations, t, h, y, lost, kept, room));
+    double t = c->t0 + (double)(c->from + *done) * c->h;
+    bool fine = !is_bad(take_step(c, c->numbers, t, y, lost, kept, room));
     *done += fine;
     return fine;
 }
@@ -29,34 +25,27 @@ NEVH__INLINE void store_all(double *to, const double *from) {
     __builtin_memcpy(to, from, COUNT * sizeof *to);
 }
 
-size_t nevh_native_steps(const double *restrict N, double *restrict W,
-                         double *restrict T, size_t operations, double t0,
-                         double h, size_t from, size_t steps,
-                         double *restrict Q, double *restrict P,
-                         double *restrict M, size_t *counted,
-                         double *restrict numbers) {
-    nevh__number *restrict room = (nevh__number *)numbers;
+size_t nevh_native_steps(const nevh__steps_call *call) {
+    const nevh__steps_call c = *call;
+    nevh__number *restrict room = (nevh__number *)c.room;
     nevh__number *y = room + ROWS_BEFORE * (size_t)DOF;
     nevh__number *lost = room + (ROWS_BEFORE + 2) * (size_t)DOF;
     nevh__number *kept = room + (ROWS_BEFORE + 4) * (size_t)DOF;
-    (void)counted;
-    double *flags = M + (2 + (KEPT > 0)) * COUNT;
+    double *M = c.memory, *flags = M + (2 + (KEPT > 0)) * COUNT;
     size_t done = 0;
-    load_all((double *)y, Q);
-    load_all((double *)(y + DOF), P);
+    load_all((double *)y, c.q);
+    load_all((double *)(y + DOF), c.p);
     load_all((double *)lost, M);
     load_all((double *)(lost + DOF), M + COUNT);
     if (KEPT > 0 && *flags != 0)
         load_all((double *)kept, M + 2 * COUNT);
-    else if (is_bad(take_first(N, T, t0 + (double)from * h, h, y, lost, kept,
-                               room)))
+    else if (is_bad(take_first(&c, c.numbers, y, lost, kept, room)))
         return 0;
-    while (done < steps)
-        if (!take_steps(N, W, T, operations, t0, h, from + done, steps - done,
-                        y, lost, kept, room, &done))
+    while (done < c.steps)
+        if (!take_steps(&c, y, lost, kept, room, &done))
             return done;
-    store_all(Q, (double *)y);
-    store_all(P, (double *)(y + DOF));
+    store_all(c.q, (double *)y);
+    store_all(c.p, (double *)(y + DOF));
     store_all(M, (double *)lost);
     store_all(M + COUNT, (double *)(lost + DOF));
     if (KEPT) {

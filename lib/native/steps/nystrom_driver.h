@@ -139,9 +139,11 @@ NEVH__INLINE double take_trial(NEVH__COMPILED(const double *N, ) double t,
 /* A step of the state y, q and then p.  Returns 0 if all is finite. */
 static double take_step(double t, double h, double *y, double *lost) {
 #else
-NEVH__INLINE double take_step(NEVH__TABLES double t, double h, double *y,
-                              double *lost, double *kept, double *room) {
-    (void)W, (void)T, (void)operations, (void)kept, (void)room;
+NEVH__INLINE double take_step(const nevh__steps_call *c, const double *N,
+                              double t, double *y, double *lost, double *kept,
+                              double *room) {
+    double h = c->h;
+    (void)kept, (void)room;
 #endif
     double change[2 * DOF];
     stages s;

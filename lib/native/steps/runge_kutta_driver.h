@@ -102,13 +102,15 @@ static double take_step(double t, double h, double *y, double *lost) {
     double step[2 * DOF], point[2 * DOF], slopes[STAGES * 2 * DOF];
 #endif
 #else
-NEVH__INLINE nevh__number take_step(NEVH__TABLES double t, double h,
-                                    nevh__number *y, nevh__number *lost,
-                                    nevh__number *kept, nevh__number *room) {
+NEVH__INLINE nevh__number take_step(const nevh__steps_call *c, const double *N,
+                                    double t, nevh__number *y,
+                                    nevh__number *lost, nevh__number *kept,
+                                    nevh__number *room) {
+    double h = c->h;
     NEVH__ROWS(step, 0, 2);
     NEVH__ROWS(point, 2, 2);
     NEVH__ROWS(slopes, 4, 2 * STAGES);
-    (void)W, (void)T, (void)operations, (void)kept, (void)room;
+    (void)kept, (void)room;
 #endif
     nevh__number bad = {0};
     struct nevh__runge_kutta_owner owner = {t, h, &bad NEVH__COMPILED(, N)};

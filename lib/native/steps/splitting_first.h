@@ -17,9 +17,9 @@ nevh__splitting_inverse(const nevh__splitting_step *x, int way) {
 
 enum { KEPT = KEEPS ? DOF : 0 };
 static __attribute__((noinline)) nevh__number
-take_first(const double *N, const double *T, double t, double h,
-           const nevh__number *y, const nevh__number *lost, nevh__number *kept,
-           nevh__number *room) {
+take_first(const nevh__steps_call *c, const double *N, const nevh__number *y,
+           const nevh__number *lost, nevh__number *kept, nevh__number *room) {
+    double t = c->t0 + (double)c->from * c->h + c->times[0] * c->h;
     nevh__number bad = {0};
     NEVH__ROWS(point, 0, 2);
     (void)room;
@@ -28,7 +28,7 @@ take_first(const double *N, const double *T, double t, double h,
     }
     for (size_t i = 0; KEEPS && i < DOF; i += ONE)
         bad += (KICKS_FIRST ? kick_slope : drift_slope)(
-            N, t + T[0] * h, point + i, point + DOF + i, kept + i NEVH__WHOLE);
+            N, t, point + i, point + DOF + i, kept + i NEVH__WHOLE);
     return bad;
 }
 

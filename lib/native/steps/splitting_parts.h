@@ -45,20 +45,19 @@ static __attribute__((noinline)) void operate(const nevh__splitting_step *x,
         nevh__splitting_operate(x, 0, 1, size, i, false, false);
 }
 
-NEVH__INLINE wide take_step(NEVH__TABLES double t, double h, wide *y,
-                            wide *lost, wide *kept, wide *room) {
-    NEVH__ROWS(change, 0, 2);
-    NEVH__ROWS(point, 2, 2);
-    NEVH__ROWS(slope, 4, 1);
-    wide bad = {0};
-    nevh__splitting_scheme scheme = {operations, W, T, KICKS_FIRST, KEEPS};
+NEVH__INLINE wide take_step(const nevh__steps_call *c, const double *N,
+                            double t, wide *y, wide *lost, wide *kept,
+                            wide *room) {
+    wide *change = room, *point = change + 2 * WINDOW;
+    wide *slope = point + 2 * WINDOW, bad = {0};
+    nevh__splitting_scheme scheme = {c->operations, c->weights, c->times,
+                                     KICKS_FIRST, KEEPS};
+    double h = c->h;
     size_t origin = 0;
     for (size_t round = 0; round < PARTS + lags[OPERATIONS - 1]; round++) {
         if (round < PARTS && round * PART == origin + WINDOW) {
             size_t next = (round - IN_WORK) * PART;
-            move_all(change, WINDOW, next - origin, 2);
-            move_all(point, WINDOW, next - origin, 2);
-            move_all(slope, WINDOW, next - origin, 1);
+            move_all(room, WINDOW, next - origin, 5);
             origin = next;
         }
         for (size_t i = 0; i <= OPERATIONS; i++) {

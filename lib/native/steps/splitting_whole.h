@@ -50,10 +50,13 @@ static double take_step(double t, double h, double *y, double *lost,
     double change[2 * DOF], point[2 * DOF], slope[DOF];
 #endif
 #else
-NEVH__INLINE nevh__number take_step(NEVH__TABLES double t, double h,
-                                    nevh__number *y, nevh__number *lost,
-                                    nevh__number *kept, nevh__number *room) {
-    nevh__splitting_scheme scheme = {operations, W, T, KICKS_FIRST, KEEPS};
+NEVH__INLINE nevh__number take_step(const nevh__steps_call *c, const double *N,
+                                    double t, nevh__number *y,
+                                    nevh__number *lost, nevh__number *kept,
+                                    nevh__number *room) {
+    nevh__splitting_scheme scheme = {c->operations, c->weights, c->times,
+                                     KICKS_FIRST, KEEPS};
+    double h = c->h;
     bool has_kept = KEEPS;
     NEVH__ROWS(change, 0, 2);
     NEVH__ROWS(point, 2, 2);

@@ -33,11 +33,11 @@ NEVH__INLINE int nevh__tao_account(const nevh__tao_step *z,
    and the gradient where the step begins. */
 enum { KEPT = 4 * DOF };
 static __attribute__((noinline)) nevh__number
-take_first(const double *N, const double *T, double t, double h,
-           const nevh__number *y, const nevh__number *lost, nevh__number *kept,
-           nevh__number *room) {
+take_first(const nevh__steps_call *c, const double *N, const nevh__number *y,
+           const nevh__number *lost, nevh__number *kept, nevh__number *room) {
+    double t = c->t0 + (double)c->from * c->h;
     nevh__number point[2 * DOF], bad;
-    (void)T, (void)h, (void)room;
+    (void)room;
     NEVH__EACH(k, 1, DOF) {
         point[k] = y[k] + lost[k];
         point[DOF + k] = y[DOF + k] + (kept[DOF + k] + lost[DOF + k]);
@@ -113,12 +113,12 @@ static double take_step(double t, double h, double *y, double *lost,
     return step_copies(W, t, h, y, lost, kept);
 }
 #else
-NEVH__INLINE nevh__number take_step(const double *N, double *W, double *T,
-                                    size_t operations, double t, double h,
-                                    nevh__number *y, nevh__number *lost,
-                                    nevh__number *kept, nevh__number *room) {
-    (void)T, (void)operations, (void)room;
-    return step_copies(N, W, t, h, y, lost, kept);
+NEVH__INLINE nevh__number take_step(const nevh__steps_call *c, const double *N,
+                                    double t, nevh__number *y,
+                                    nevh__number *lost, nevh__number *kept,
+                                    nevh__number *room) {
+    (void)room;
+    return step_copies(N, c->weights, t, c->h, y, lost, kept);
 }
 #endif
 
