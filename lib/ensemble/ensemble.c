@@ -90,8 +90,23 @@ int nevh__ensemble_stepper(nevh_ensemble *e, const nevh_system *system,
                                    : NEVH_OK;
 }
 
-static int plan_energy(nevh_ensemble *e, const nevh_options *options) {
-    nevh_options o = {.width = e->width, .portable = options->portable};
+/* One of all lanes, and one that steps where it fails, and last. */
+static int plan_steppers(nevh_ensemble *e) {
+    nevh_options spare = *e->options.options;
+    spare.native = NEVH_NATIVE_NEVER;
+    int status = nevh__ensemble_stepper(e, e->system, e->options.options,
+                                        e->width, &e->stepper);
+    if (!status)
+        status = nevh__ensemble_stepper(e, e->system, &spare, 1, &e->spare);
+    e->narrow = e->spare;
+    return status;
+}
+
+static int plan_energy(nevh_ensemble *e) {
+    nevh_options o = {.width = e->width,
+                      .portable = e->options.options->portable};
+    if (!e->has_energy)
+        return NEVH_OK;
     e->energy = nevh_energy_new(e->system, &o);
     if (!e->energy)
         return nevh__no_memory(&e->report);
@@ -111,8 +126,10 @@ static int plan_energy(nevh_ensemble *e, const nevh_options *options) {
 }
 
 /* Velocities are exact, where terms bring their derivatives. */
-static int plan_motion(nevh_ensemble *e, const nevh_options *options) {
-    nevh_options o = *options;
+static int plan_motion(nevh_ensemble *e) {
+    nevh_options o = *e->options.options;
+    if (!e->moving)
+        return NEVH_OK;
     for (int i = 0; i < 2; i++) {
         o.gradient = i ? nevh_central6 : nevh_exact;
         o.width = 1;
@@ -188,11 +205,11 @@ static int plan_rooms(nevh_ensemble *e) {
     return e->memory && plan_root(e) ? NEVH_OK : nevh__no_memory(&e->report);
 }
 
-static int plan_outcomes(nevh_ensemble *e, const nevh_options *options) {
+static int plan_outcomes(nevh_ensemble *e) {
     int status = NEVH_OK;
     for (size_t i = 0; i < e->n_outcomes && !status; i++)
         if (e->outcomes[i].type->plan)
-            status = e->outcomes[i].type->plan(e, i, options);
+            status = e->outcomes[i].type->plan(e, i, e->options.options);
     return status;
 }
 
@@ -208,9 +225,8 @@ static int check_times(nevh_ensemble *e) {
     return NEVH_OK;
 }
 
-static int plan(nevh_ensemble *e) {
-    nevh_options o =
-        e->options.options ? *e->options.options : (nevh_options){0};
+/* Takes what all plans need; refuses what cannot be run. */
+static int take_options(nevh_ensemble *e) {
     if (e->system->report.status)
         return nevh__fail_as(&e->report, &e->system->report);
     if (!e->options.integrator)
@@ -218,12 +234,26 @@ static int plan(nevh_ensemble *e) {
                           "the integrator is NULL: is its name spelt right?");
     e->n = e->system->n;
     int status = check_times(e);
-    if (!status)
-        status = take_outcomes(e);
+    return status ? status : take_outcomes(e);
+}
+
+static int plan(nevh_ensemble *e) {
+    static int (*const plans[])(nevh_ensemble *) = {
+        plan_steppers,
+        plan_energy,
+        nevh__ensemble_watch_begin,
+        plan_motion,
+        plan_rooms,
+        plan_outcomes,
+        nevh__chaotic_plan,
+        nevh__ensemble_plan_crossings};
+    nevh_options o =
+        e->options.options ? *e->options.options : (nevh_options){0};
+    int status = take_options(e);
     if (status)
         return status;
-    const nevh_system *system = e->system;
-    bool autonomous = nevh_system_traits(system) & NEVH_AUTONOMOUS;
+    e->options.options = &o;
+    bool autonomous = nevh_system_traits(e->system) & NEVH_AUTONOMOUS;
     o.balance =
         e->has_energy && (!autonomous || nevh_system_friction(e->system, NULL));
     e->width = choose_width(e, &o);
@@ -232,26 +262,9 @@ static int plan(nevh_ensemble *e) {
     e->together = !autonomous;
     if (!nevh__ensemble_watch_plan(e))
         return nevh__no_memory(&e->report);
-    status = nevh__ensemble_stepper(e, system, &o, e->width, &e->stepper);
-    nevh_options spare = o; /* it steps where others fail, and last */
-    spare.native = NEVH_NATIVE_NEVER;
-    if (!status)
-        status = nevh__ensemble_stepper(e, system, &spare, 1, &e->spare);
-    e->narrow = e->spare;
-    if (!status && e->has_energy)
-        status = plan_energy(e, &o);
-    if (!status && !nevh__ensemble_watch_begin(e))
-        status = nevh__no_memory(&e->report);
-    if (!status && e->moving)
-        status = plan_motion(e, &o);
-    if (!status)
-        status = plan_rooms(e);
-    if (!status)
-        status = plan_outcomes(e, &o);
-    if (!status && nevh__ensemble_has_chaos(e))
-        status = nevh__chaotic_plan(e, &o);
-    return !status && e->n_crossings ? nevh__ensemble_plan_crossings(e)
-                                     : status;
+    for (size_t i = 0; i < sizeof plans / sizeof *plans && !status; i++)
+        status = plans[i](e);
+    return status;
 }
 
 nevh_ensemble *nevh_ensemble_new(const nevh_system *system,
@@ -263,7 +276,7 @@ nevh_ensemble *nevh_ensemble_new(const nevh_system *system,
     e->options = *options;
     int status = plan(e);
     e->planned = !status;
-    e->options.options = NULL; /* borrowed until now */
+    e->options.options = NULL; /* lives until now */
     e->options.outcomes = NULL;
     if (status != NEVH_ENOMEM)
         return e;

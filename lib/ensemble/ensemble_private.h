@@ -124,10 +124,10 @@ void nevh__ensemble_value(const nevh_ensemble *, size_t o, const double t[],
                           const double q[], const double p[], double values[]);
 
 /* watch.c: values of all outcomes as compiled steps are taken.  Whether that could be:
-   before the stepper is planned, and after.  Neither leaves e->watch where it can not;
-   false: memory is out. */
+   before the stepper is planned (false: memory is out), and after.  Neither leaves
+   e->watch where it can not. */
 bool nevh__ensemble_watch_plan(nevh_ensemble *);
-bool nevh__ensemble_watch_begin(nevh_ensemble *);
+int nevh__ensemble_watch_begin(nevh_ensemble *);
 void nevh__ensemble_watch_free(nevh__watch *); /* NULL is allowed */
 const nevh__watched *nevh__ensemble_watched(const nevh_ensemble *);
 /* Takes steps of all lanes from number `from` on, up to the one whose state has to be
@@ -136,13 +136,12 @@ size_t nevh__ensemble_watch(nevh_ensemble *, size_t from, size_t steps);
 
 /* outcomes/crossings.c: crossings of lanes that are to be looked at and are not
    over. */
-int nevh__ensemble_plan_crossings(nevh_ensemble *);
+int nevh__ensemble_plan_crossings(nevh_ensemble *); /* where one counts */
 void nevh__ensemble_free_crossings(nevh_ensemble *);
 void nevh__ensemble_look_at_crossings(nevh_ensemble *);
 
 /* outcomes/chaotic.c: outcomes that tell chaos. */
-bool nevh__ensemble_has_chaos(const nevh_ensemble *);
-int nevh__chaotic_plan(nevh_ensemble *, const nevh_options *);
+int nevh__chaotic_plan(nevh_ensemble *);  /* where one is asked for */
 void nevh__chaotic_free(nevh__chaotic *); /* NULL is allowed */
 /* Keeps where a lane's orbit starts: e->q1, e->p1. */
 void nevh__chaotic_begin(nevh_ensemble *, size_t lane);

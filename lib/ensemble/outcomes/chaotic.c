@@ -67,10 +67,6 @@ static size_t count_of_chaos(const nevh_ensemble *e) {
     return count;
 }
 
-bool nevh__ensemble_has_chaos(const nevh_ensemble *e) {
-    return count_of_chaos(e) > 0;
-}
-
 static bool asks(const nevh_ensemble *e, const nevh__outcome_type *type) {
     for (size_t i = 0; i < e->n_outcomes; i++)
         if (e->outcomes[i].type == type)
@@ -108,8 +104,11 @@ static int plan_chaos(nevh_ensemble *e, const nevh_options *options) {
                                             : nevh__no_memory(&e->report);
 }
 
-int nevh__chaotic_plan(nevh_ensemble *e, const nevh_options *options) {
+int nevh__chaotic_plan(nevh_ensemble *e) {
     size_t each = 2 * e->n + e->columns, lanes = 2 * e->n * e->width;
+    size_t count = count_of_chaos(e);
+    if (!count)
+        return NEVH_OK;
     nevh__chaotic *x = e->chaotic =
         nevh__array(1, sizeof *x + (lanes + QUEUE * each) * sizeof(double));
     if (!x || !(x->queue = nevh__array(QUEUE, sizeof *x->queue)))
@@ -119,7 +118,7 @@ int nevh__chaotic_plan(nevh_ensemble *e, const nevh_options *options) {
         x->queue[i].start = x->numbers + lanes + i * each;
         x->queue[i].values = x->queue[i].start + 2 * e->n;
     }
-    x->alone = count_of_chaos(e) == e->n_outcomes && !e->options.stop.value;
+    x->alone = count == e->n_outcomes && !e->options.stop.value;
     x->jobs = (nevh__chaos_jobs){
         .data = e,
         .sparse = !asks(e, &nevh__outcome_megno),
@@ -127,7 +126,7 @@ int nevh__chaotic_plan(nevh_ensemble *e, const nevh_options *options) {
             !asks(e, &nevh__outcome_megno) && !asks(e, &nevh__outcome_lyapunov),
         .together = e->together,
     };
-    return plan_chaos(e, options);
+    return plan_chaos(e, e->options.options);
 }
 
 void nevh__chaotic_free(nevh__chaotic *x) {

@@ -110,6 +110,8 @@ static bool plan_lanes(nevh_ensemble *e) {
 
 /* The crossings are freed with the ensemble, as data of the first. */
 int nevh__ensemble_plan_crossings(nevh_ensemble *e) {
+    if (!e->n_crossings)
+        return NEVH_OK;
     crossing *data = nevh__array(e->n_crossings, sizeof *data);
     if (!data)
         return nevh__no_memory(&e->report);
@@ -275,6 +277,15 @@ static void keep_slopes(nevh_ensemble *e, size_t lane, const double from[]) {
         e->crossing_lanes->slope[i] = from[i];
 }
 
+/* Slopes where the first step began, of lanes that took it. */
+static void begin_slopes(nevh_ensemble *e) {
+    double *slope = e->crossing_lanes->slope_after;
+    find_slopes(e, e->ago1.t, e->ago1.q, e->ago1.p, e->ago1.value, slope);
+    for (size_t lane = 0; lane < e->width; lane++)
+        if (e->lanes[lane].look && e->lanes[lane].step == 1)
+            keep_slopes(e, lane, slope);
+}
+
 void nevh__ensemble_look_at_crossings(nevh_ensemble *e) {
     nevh__crossing_lanes *c = e->crossing_lanes;
     bool any = false, first = false;
@@ -288,13 +299,8 @@ void nevh__ensemble_look_at_crossings(nevh_ensemble *e) {
              i += e->width)
             c->came[i] = 0;
     }
-    if (first) {
-        find_slopes(e, e->ago1.t, e->ago1.q, e->ago1.p, e->ago1.value,
-                    c->slope_after);
-        for (size_t lane = 0; lane < e->width; lane++)
-            if (e->lanes[lane].look && e->lanes[lane].step == 1)
-                keep_slopes(e, lane, c->slope_after);
-    }
+    if (first)
+        begin_slopes(e);
     if (any)
         find_slopes(e, e->now.t, e->q, e->p, e->now.value, c->slope_after);
     for (size_t lane = 0; lane < e->width; lane++) {
