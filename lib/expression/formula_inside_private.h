@@ -30,6 +30,8 @@ typedef struct {
     struct nevh__chunk *chunks;
 } nevh__pool;
 void *nevh__pool_take(nevh__pool *, size_t count, size_t size); /* zeroed */
+/* Moves a text of nevh__text() there; NULL, as for NULL: memory is out. */
+char *nevh__pool_keep(nevh__pool *, char *text);
 void nevh__pool_free(nevh__pool *);
 
 /* Characters. */

@@ -3,6 +3,7 @@
 #include "expression/formula_inside_private.h"
 #include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Sizes of the first chunk and of the largest; each is twice as large as the one
    before. */
@@ -39,6 +40,14 @@ void *nevh__pool_take(nevh__pool *pool, size_t count, size_t size) {
     void *taken = (char *)chunk->bytes + chunk->used;
     chunk->used += bytes;
     return taken;
+}
+
+char *nevh__pool_keep(nevh__pool *pool, char *text) {
+    char *kept = text ? nevh__pool_take(pool, strlen(text) + 1, 1) : NULL;
+    if (kept)
+        strcpy(kept, text);
+    free(text);
+    return kept;
 }
 
 void nevh__pool_free(nevh__pool *pool) {

@@ -32,25 +32,13 @@ static bool add_coordinate(nevh_scene *s, nevh__scene_model *m,
     return true;
 }
 
-static char *name_of(nevh_scene *s, nevh__scene_model *m,
-                     const nevh__coordinate *c, size_t k) {
-    const char *name = c->statement->head.name;
-    char *full =
-        c->count ? nevh__text("%s[%zu]", name, k + 1) : nevh__text("%s", name);
-    char *copy = full ? nevh__pool_take(&m->pool, strlen(full) + 1, 1) : NULL;
-    if (copy)
-        strcpy(copy, full);
-    else
-        nevh__scene_no_memory(s);
-    free(full);
-    return copy;
-}
-
 static bool add_names(nevh_scene *s, nevh__scene_model *m,
                       const nevh__coordinate *c) {
     for (size_t k = 0; k < (c->count ? c->count : 1); k++)
-        if (!(m->coordinate_names[c->first + k] = name_of(s, m, c, k)))
-            return false;
+        if (!(m->coordinate_names[c->first + k] = nevh__pool_keep(
+                  &m->pool, nevh__text(c->count ? "%s[%zu]" : "%s",
+                                       c->statement->head.name, k + 1))))
+            return nevh__scene_no_memory(s);
     return true;
 }
 
@@ -136,23 +124,21 @@ static bool claim(nevh_scene *s, nevh__scene_model *m, size_t first,
     return true;
 }
 
-static nevh__wide *exact_q(const nevh__scene_model *m, size_t k) {
-    return m->exact ? m->exact->q + k : NULL;
-}
-
-static nevh__wide *exact_p(const nevh__scene_model *m, size_t k) {
-    return m->exact ? m->exact->p + k : NULL;
-}
-
-static nevh__wide *exact_v(const nevh__scene_model *m, size_t k) {
-    return m->exact ? m->exact->v + k : NULL;
+/* The start of element k on: of coordinates, momenta or velocities. */
+static nevh__scene_numbers start_of(const nevh__scene_model *m,
+                                    nevh__meaning is, size_t k) {
+    const nevh__exact_numbers *e = m->exact;
+    nevh__scene_numbers all =
+        is == NEVH__COORDINATE ? (nevh__scene_numbers){m->q, e ? e->q : NULL}
+        : is == NEVH__MOMENTUM ? (nevh__scene_numbers){m->p, e ? e->p : NULL}
+                               : (nevh__scene_numbers){m->v, e ? e->v : NULL};
+    return nevh__scene_numbers_from(all, k);
 }
 
 static bool take_value(nevh_scene *s, nevh__scene_model *m,
-                       const nevh__piece *piece, double *value,
-                       nevh__wide *wide) {
-    return nevh__piece_number(s, m, piece, value) &&
-           (!wide || nevh__piece_wide(s, m, piece, wide));
+                       const nevh__piece *piece, nevh__scene_numbers to) {
+    return nevh__piece_number(s, m, piece, to.near) &&
+           (!to.wide || nevh__piece_wide(s, m, piece, to.wide));
 }
 
 /* VALUE or VALUE, MOMENTUM */
@@ -160,13 +146,14 @@ static bool take_pair(nevh_scene *s, nevh__scene_model *m,
                       const nevh__coordinate *c, const nevh__piece *value) {
     size_t given, k = c->first;
     nevh__piece *parts = nevh__piece_list(s, &m->pool, value, &given);
-    if (!parts || !take_value(s, m, &parts[0], &m->q[k], exact_q(m, k)))
+    if (!parts ||
+        !take_value(s, m, &parts[0], start_of(m, NEVH__COORDINATE, k)))
         return false;
     if (given > 2)
         return nevh__scene_fail(s, NEVH_EINVAL, &parts[2],
                                 "a coordinate takes VALUE, or VALUE, MOMENTUM");
     return given == 1 ||
-           (take_value(s, m, &parts[1], &m->p[k], exact_p(m, k)) &&
+           (take_value(s, m, &parts[1], start_of(m, NEVH__MOMENTUM, k)) &&
             claim(s, m, k, 1, c->statement));
 }
 
@@ -175,8 +162,8 @@ static bool take_elements(nevh_scene *s, nevh__scene_model *m,
                           const nevh__coordinate *c, const nevh__piece *value) {
     size_t count = c->count ? c->count : 1;
     if (!nevh__elements_values(s, m, c->statement, value, count,
-                               m->q + c->first, m->v + c->first,
-                               exact_q(m, c->first), exact_v(m, c->first)) ||
+                               start_of(m, NEVH__COORDINATE, c->first),
+                               start_of(m, NEVH__VELOCITY, c->first)) ||
         !claim(s, m, c->first, count, c->statement))
         return false;
     for (size_t k = 0; k < count; k++)
@@ -194,7 +181,7 @@ static bool take_coordinate(nevh_scene *s, nevh__scene_model *m,
     bool fine = elements ? take_elements(s, m, c, &value)
                 : c->count
                     ? nevh__head_values(s, m, c->statement, &value, c->count,
-                                        m->q + c->first, exact_q(m, c->first))
+                                        start_of(m, NEVH__COORDINATE, c->first))
                     : take_pair(s, m, c, &value);
     while (fine && stop)
         fine = nevh__piece_split(s, &m->pool, &rest, ";", &clause, &stop) &&
@@ -221,22 +208,12 @@ static bool take_motion(nevh_scene *s, nevh__scene_model *m,
                                 count ? "%s is an array: write %s[1..%zu] = ..."
                                       : "%s has no index",
                                 name + 2, name, count);
-    bool velocity = meaning == NEVH__VELOCITY;
     if (!claim(s, m, first, shape.count, statement))
         return false;
     for (size_t k = 0; k < shape.count; k++)
-        m->by_velocity[first + k] = velocity;
+        m->by_velocity[first + k] = meaning == NEVH__VELOCITY;
     return nevh__head_values(s, m, statement, &statement->value, shape.count,
-                             (velocity ? m->v : m->p) + first,
-                             (velocity ? exact_v : exact_p)(m, first));
-}
-
-static const char *with_prefix(nevh_scene *s, nevh__scene_model *m,
-                               const char *prefix, const char *name) {
-    char *text = nevh__pool_take(&m->pool, strlen(name) + 3, 1);
-    if (!text)
-        nevh__scene_no_memory(s);
-    return text ? strcat(strcpy(text, prefix), name) : name;
+                             start_of(m, meaning, first));
 }
 
 static bool fail_start(nevh_scene *s, nevh__scene_model *m,
@@ -249,8 +226,11 @@ static bool fail_start(nevh_scene *s, nevh__scene_model *m,
         return nevh__scene_no_memory(s);
     for (size_t i = 0; i < m->n_coordinates; i++)
         for (int k = 0; k < 3; k++)
-            known[count++] = with_prefix(
-                s, m, prefix[k], m->coordinates[i].statement->head.name);
+            if (!(known[count++] = nevh__pool_keep(
+                      &m->pool,
+                      nevh__text("%s%s", prefix[k],
+                                 m->coordinates[i].statement->head.name))))
+                return nevh__scene_no_memory(s);
     return nevh__scene_fail_word(
         s, &one->key, "coordinate, momentum (p_NAME) or velocity (v_NAME)",
         one->head.name, known, count);
@@ -268,40 +248,37 @@ static bool start_range(nevh_scene *s, const nevh__scene_model *m,
     return true;
 }
 
+/* Notes that momenta are given from outside, or velocities. */
+static void replace_motion(nevh__scene_model *m, const nevh__statement *by,
+                           nevh__meaning is, size_t from, size_t to) {
+    for (size_t k = from; is != NEVH__COORDINATE && k < to; k++) {
+        m->moving[k] = by;
+        m->by_velocity[k] = is == NEVH__VELOCITY;
+        if (is == NEVH__VELOCITY)
+            m->p[k] = 0; /* until it is found */
+    }
+}
+
 /* A start from outside: of coordinates, momenta or velocities. */
 static bool take_start(nevh_scene *s, nevh__scene_model *m,
                        const nevh__statement *one) {
+    nevh__scene_numbers values;
     size_t from, to, first;
     nevh__meaning is = nevh__names_find(m->names, one->head.name, NULL, &first);
     if (is != NEVH__COORDINATE && is != NEVH__MOMENTUM && is != NEVH__VELOCITY)
         return fail_start(s, m, one);
     if (!start_range(s, m, one, &from, &to))
         return false;
-    double *all = is == NEVH__COORDINATE ? m->q
-                  : is == NEVH__MOMENTUM ? m->p
-                                         : m->v;
     /* The formula of an index is of x[first], x[first + 1], ... */
-    size_t skipped = one->head.index ? from - first : 0;
-    nevh__wide *wide_all = (is == NEVH__COORDINATE ? exact_q
-                            : is == NEVH__MOMENTUM ? exact_p
-                                                   : exact_v)(m, 0);
-    size_t count = skipped + to - from;
-    double *values = nevh__pool_take(&m->pool, count, sizeof *values);
-    nevh__wide *wide =
-        wide_all ? nevh__pool_take(&m->pool, count, sizeof *wide) : NULL;
-    if (!values || (wide_all && !wide))
-        return nevh__scene_no_memory(s);
-    if (!nevh__head_values(s, m, one, &one->value, count, values, wide))
+    size_t skipped = one->head.index ? from - first : 0, count = to - from;
+    if (!nevh__scene_numbers_take(s, m, skipped + count, &values) ||
+        !nevh__head_values(s, m, one, &one->value, skipped + count, values))
         return false;
-    memcpy(all + from, values + skipped, (to - from) * sizeof *values);
-    if (wide)
-        memcpy(wide_all + from, wide + skipped, (to - from) * sizeof *wide);
-    for (size_t k = from; is != NEVH__COORDINATE && k < to; k++) {
-        m->moving[k] = one;
-        m->by_velocity[k] = is == NEVH__VELOCITY;
-        if (is == NEVH__VELOCITY)
-            m->p[k] = 0; /* until it is found */
-    }
+    nevh__scene_numbers all = start_of(m, is, from);
+    memcpy(all.near, values.near + skipped, count * sizeof *all.near);
+    if (all.wide)
+        memcpy(all.wide, values.wide + skipped, count * sizeof *all.wide);
+    replace_motion(m, one, is, from, to);
     return true;
 }
 

@@ -66,9 +66,10 @@ static bool check(nevh_scene *s, const nevh__statement *one,
 
 bool nevh__elements_values(nevh_scene *s, nevh__scene_model *m,
                            const nevh__statement *one, const nevh__piece *value,
-                           size_t count, double q[], double v[],
-                           nevh__wide wide_q[], nevh__wide wide_v[]) {
+                           size_t count, nevh__scene_numbers q,
+                           nevh__scene_numbers v) {
     nevh__piece *arguments = NULL;
+    nevh__scene_numbers all;
     size_t given = 0;
     if (!nevh__piece_call(s, &m->pool, value, name, &arguments, &given))
         return false;
@@ -77,29 +78,24 @@ bool nevh__elements_values(nevh_scene *s, nevh__scene_model *m,
                                 "this is written x, y, z = elements(a, e, "
                                 "inclination, node, pericentre, mean_anomaly, "
                                 "mu), or with x, y alone");
-    double *all = nevh__pool_take(&m->pool, ELEMENTS * count, sizeof *all);
-    nevh__wide *wide =
-        wide_q ? nevh__pool_take(&m->pool, ELEMENTS * count, sizeof *wide)
-               : NULL;
-    if (!all || (wide_q && !wide))
-        return nevh__scene_no_memory(s);
+    if (!nevh__scene_numbers_take(s, m, ELEMENTS * count, &all))
+        return false;
     for (size_t i = 0; i < ELEMENTS; i++)
-        if (!nevh__head_values(s, m, one, &arguments[i], count, all + i * count,
-                               wide ? wide + i * count : NULL))
+        if (!nevh__head_values(s, m, one, &arguments[i], count,
+                               nevh__scene_numbers_from(all, i * count)))
             return false;
     for (size_t k = 0; k < count; k++) {
         double x[ELEMENTS];
-        for (size_t i = 0; i < ELEMENTS; i++)
-            x[i] = all[i * count + k];
+        nevh__wide wide[ELEMENTS];
+        for (size_t i = 0; i < ELEMENTS; i++) {
+            x[i] = all.near[i * count + k];
+            wide[i] = all.wide ? all.wide[i * count + k] : 0;
+        }
         if (!check(s, one, arguments, x))
             return false;
-        place(x, one->member, &q[k], &v[k]);
-        if (!wide)
-            continue;
-        nevh__wide w[ELEMENTS];
-        for (size_t i = 0; i < ELEMENTS; i++)
-            w[i] = wide[i * count + k];
-        wide_place(w, one->member, &wide_q[k], &wide_v[k]);
+        place(x, one->member, &q.near[k], &v.near[k]);
+        if (all.wide)
+            wide_place(wide, one->member, &q.wide[k], &v.wide[k]);
     }
     return true;
 }

@@ -35,6 +35,20 @@ static const char *shown(const char *at) {
     return control || broken || code == 0x7F ? "?" : at;
 }
 
+/* Below the characters from `at` to before `last`: a caret below number `place`,
+   and marks below the rest of `length`. */
+static void append_marks(buffer *b, const char *at, const char *last,
+                         size_t place, size_t length) {
+    for (; place > 0; place--) {
+        append(b, at < last && *at == '\t' ? "\t" : " ", 1);
+        at += at < last ? step(at) : 0;
+    }
+    append(b, "^", 1);
+    at += at < last ? step(at) : 0;
+    for (; length > 1 && at < last; length--, at += step(at))
+        append(b, "~", 1);
+}
+
 /* The line around a column, then the same width of space and a caret. */
 static void append_line(buffer *b, const nevh__line *line, size_t column,
                         size_t length) {
@@ -49,15 +63,7 @@ static void append_line(buffer *b, const nevh__line *line, size_t column,
         append(b, shown(at), *shown(at) == '?' ? 1 : step(at));
     append(b, "\n", 1);
     append(b, "   ", skip ? 3 : 0);
-    const char *last = at;
-    for (at = from; here < column; here++) {
-        append(b, at < last && *at == '\t' ? "\t" : " ", 1);
-        at += at < last ? step(at) : 0;
-    }
-    append(b, "^", 1);
-    at += at < last ? step(at) : 0;
-    for (; length > 1 && at < last; length--, at += step(at))
-        append(b, "~", 1);
+    append_marks(b, from, at, column > here ? column - here : 0, length);
 }
 
 bool nevh__scene_fail_at(nevh_scene *s, int status, const nevh__line *line,

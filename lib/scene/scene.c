@@ -88,13 +88,10 @@ nevh__scene_model *nevh__model_with(nevh_scene *s,
 static nevh_scene *new_scene(const char *name) {
     nevh_scene *s = nevh__array(1, sizeof *s);
     name = name ? name : "scene";
-    char *copy = s ? nevh__pool_take(&s->pool, strlen(name) + 1, 1) : NULL;
-    if (!copy) {
-        free(s);
-        return NULL;
-    }
-    s->name = strcpy(copy, name);
-    return s;
+    if (s && (s->name = nevh__pool_keep(&s->pool, nevh__text("%s", name))))
+        return s;
+    free(s);
+    return NULL;
 }
 
 static void begin(nevh_scene *s, const nevh_scene_options *options,

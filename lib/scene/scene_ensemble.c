@@ -76,12 +76,21 @@ static bool take_list(nevh_scene *s, nevh__scene_model *m, nevh__varied *v) {
     return true;
 }
 
+/* from FORMULA: where the search begins */
+static bool take_guess(nevh_scene *s, nevh__scene_model *m, nevh__varied *v,
+                       const nevh__piece *from) {
+    size_t at = (size_t)(from->at - from->line->text);
+    nevh__piece formula;
+    return nevh__piece_take(s, &m->pool, from->line, at + 4,
+                            at + strlen(from->text), &formula) &&
+           nevh__piece_number(s, m, &formula, &v->a);
+}
+
 /* solve(LEFT = RIGHT), or with ", from FORMULA" */
 static bool take_solve(nevh_scene *s, nevh__scene_model *m, nevh__varied *v,
                        const nevh__piece *arguments, size_t given) {
     enum { ANYTHING = NEVH__READS_TIME | NEVH__READS_STATE };
     const nevh__piece *from = given > 1 ? &arguments[1] : NULL;
-    nevh__piece formula;
     char stop;
     v->how = NEVH__VARY_SOLVE;
     v->count = 1;
@@ -102,10 +111,7 @@ static bool take_solve(nevh_scene *s, nevh__scene_model *m, nevh__varied *v,
     if ((!v->energy && !nevh__piece_check(s, m, &v->left, ANYTHING)) ||
         !nevh__piece_check(s, m, &v->right, ANYTHING))
         return false;
-    size_t at = from ? (size_t)(from->at - from->line->text) : 0;
-    return !from || (nevh__piece_take(s, &m->pool, from->line, at + 4,
-                                      at + strlen(from->text), &formula) &&
-                     nevh__piece_number(s, m, &formula, &v->a));
+    return !from || take_guess(s, m, v, from);
 }
 
 static bool take_what(nevh_scene *s, nevh__scene_model *m, nevh__varied *v) {
@@ -134,8 +140,7 @@ static bool take_what(nevh_scene *s, nevh__scene_model *m, nevh__varied *v) {
 }
 
 /* The place of NAME or NAME[k]. */
-static bool find_place(nevh_scene *s, const nevh__scene_model *m,
-                       nevh__varied *v) {
+static bool find_place(nevh_scene *s, nevh__scene_model *m, nevh__varied *v) {
     const nevh__head *head = &v->statement->head;
     const nevh__piece *key = &v->statement->key;
     size_t count = 0, first = 0;
@@ -159,13 +164,9 @@ static bool find_place(nevh_scene *s, const nevh__scene_model *m,
         return nevh__scene_fail(s, NEVH_EINVAL, key, "%s has no element %ld",
                                 head->name, at);
     v->index = (v->is == NEVH__PARAMETER ? 0 : first) + (size_t)at - 1;
-    char *name = nevh__text(count ? "%s[%ld]" : "%s", head->name, at);
-    char *copy = name ? nevh__pool_take(&((nevh__scene_model *)m)->pool,
-                                        strlen(name) + 1, 1)
-                      : NULL;
-    v->name = copy ? strcpy(copy, name) : NULL;
-    free(name);
-    return copy || nevh__scene_no_memory(s);
+    v->name = nevh__pool_keep(
+        &m->pool, nevh__text(count ? "%s[%ld]" : "%s", head->name, at));
+    return v->name || nevh__scene_no_memory(s);
 }
 
 static bool is_setting(const nevh__statement *one) {

@@ -245,11 +245,22 @@ typedef struct {
 /* The shape that NAME, NAME[1..N] or NAME[i = 1..N] has. */
 bool nevh__head_shape(nevh_scene *, const nevh__scene_model *,
                       const nevh__statement *, nevh__shape *);
-/* Values: a list of `count`, one for all, or a formula of the index.
-   wide  the same with more digits; NULL: not asked for */
+/* Numbers, and the same with more digits; NULL where the model is not exact. */
+typedef struct {
+    double *near;
+    nevh__wide *wide;
+} nevh__scene_numbers;
+static inline nevh__scene_numbers
+nevh__scene_numbers_from(nevh__scene_numbers x, size_t k) {
+    return (nevh__scene_numbers){x.near + k, x.wide ? x.wide + k : NULL};
+}
+/* Room for `count` numbers of the model; false: memory is out. */
+bool nevh__scene_numbers_take(nevh_scene *, nevh__scene_model *, size_t count,
+                              nevh__scene_numbers *);
+/* Values: a list of `count`, one for all, or a formula of the index. */
 bool nevh__head_values(nevh_scene *, nevh__scene_model *,
                        const nevh__statement *, const nevh__piece *value,
-                       size_t count, double values[], nevh__wide wide[]);
+                       size_t count, nevh__scene_numbers values);
 /* The assignment of a parameter from outside, or NULL. */
 const nevh__statement *nevh__scene_assignment(const nevh_scene *,
                                               const char *name);
@@ -274,8 +285,8 @@ bool nevh__piece_call(nevh_scene *, nevh__pool *, const nevh__piece *,
 bool nevh__is_elements(const nevh__piece *);
 bool nevh__elements_values(nevh_scene *, nevh__scene_model *,
                            const nevh__statement *, const nevh__piece *value,
-                           size_t count, double q[], double v[],
-                           nevh__wide wide_q[], nevh__wide wide_v[]);
+                           size_t count, nevh__scene_numbers q,
+                           nevh__scene_numbers v);
 
 /* Sections, in the order in which the model needs them. */
 bool nevh__model_parameters(nevh_scene *, nevh__scene_model *);

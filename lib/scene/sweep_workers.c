@@ -80,19 +80,31 @@ static void ask_for_chunk(nevh_sweep *s) {
     s->end = count < members - s->next ? s->next + count : members;
 }
 
+static bool goes_on(const nevh_sweep *s) {
+    return !s->stopped && !s->ending;
+}
+
+/* True if one more chunk may wait for members before it. */
+static bool has_room(const nevh_sweep *s) {
+    return !s->waiting || s->next + NEVH__CHUNK <= s->low + WINDOW;
+}
+
+/* The end of the next chunk; where it begins, if none is to be taken now. */
+static uint64_t chunk_end(const nevh_sweep *s) {
+    if (!has_room(s) || !goes_on(s))
+        return s->next;
+    return s->end - s->next < NEVH__CHUNK ? s->end : s->next + NEVH__CHUNK;
+}
+
 /* Takes the next one; waits for room where it may. */
 static bool take_chunk(nevh__worker *w, bool may_wait) {
     nevh_sweep *s = w->sweep;
     pthread_mutex_lock(&s->lock);
-    while (may_wait && s->waiting && !s->stopped && !s->ending &&
-           s->next < s->end && s->next + NEVH__CHUNK > s->low + WINDOW)
+    while (may_wait && !has_room(s) && goes_on(s) && s->next < s->end)
         pthread_cond_wait(&s->moved, &s->lock);
-    if (s->chunks && s->next == s->end && !s->stopped && !s->ending)
+    if (s->chunks && s->next == s->end && goes_on(s))
         ask_for_chunk(s);
-    bool room = !s->waiting || s->next + NEVH__CHUNK <= s->low + WINDOW;
-    uint64_t from = s->next, to = from;
-    if (room && !s->stopped && !s->ending && from < s->end)
-        to = s->end - from < NEVH__CHUNK ? s->end : from + NEVH__CHUNK;
+    uint64_t from = s->next, to = chunk_end(s);
     s->next = to;
     pthread_mutex_unlock(&s->lock);
     w->at = w->count = 0;
@@ -190,6 +202,10 @@ static nevh_ensemble *open(nevh_sweep *s, const nevh__variant *x,
 
 /* Members of the group, whose ensemble could not be made. */
 static void refuse_group(nevh__worker *w, const nevh__report *report) {
+    if (report->status == NEVH_ENOMEM) {
+        out_of_memory(w->sweep);
+        return;
+    }
     for (; w->at < w->group_end; w->at++) {
         uint64_t member = w->list[w->order ? w->order[w->at] : w->at];
         nevh__worker_finish(w, member, varied_values(w, member, w->room),
@@ -247,40 +263,42 @@ static void run_sharing(nevh__worker *w) {
     w->n_sharing = 0;
 }
 
+/* The group by an ensemble of its own; the whole sweep where no parameter is
+   varied. */
+static void run_own(nevh__worker *w) {
+    nevh_sweep *s = w->sweep;
+    nevh__report report = {0};
+    bool parameters = s->ensemble->parameters;
+    nevh_ensemble *e = open(
+        s, &w->variant, parameters ? w->group_end - w->at : SIZE_MAX, &report);
+    if (!e) {
+        refuse_group(w, &report);
+        return;
+    }
+    do
+        nevh_ensemble_run(e, next, done, w);
+    while (!parameters && goes_on(s) && take_chunk(w, true));
+    nevh_ensemble_free(e);
+}
+
 static void run_group(nevh__worker *w, const double varied[], bool apart) {
     nevh_sweep *s = w->sweep;
     nevh__report report = {0};
-    nevh_ensemble *e = NULL;
     bool parameters = s->ensemble->parameters;
-    bool made = nevh__sweep_variant(s, varied, &w->variant, &report);
-    bool alike = made && parameters && w->scene.model &&
-                 nevh__variants_alike(s, &w->scene, &w->variant);
-    bool by_lane =
-        made && parameters && !alike && !apart && nevh__lane_members_pay(w);
-    if (by_lane)
-        nevh__lane_members_add(w);
-    else if (made && !alike)
-        e = open(s, &w->variant, parameters ? w->group_end - w->at : SIZE_MAX,
-                 &report);
-    if (alike)
-        share(w);
-    else if (by_lane)
-        ; /* with others */
-    else if (e)
-        do
-            nevh_ensemble_run(e, next, done, w);
-        while (!w->sweep->ensemble->parameters && !w->sweep->stopped &&
-               !w->sweep->ending && take_chunk(w, true));
-    else if (report.status == NEVH_ENOMEM)
-        out_of_memory(w->sweep);
-    else
+    if (!nevh__sweep_variant(s, varied, &w->variant, &report))
         refuse_group(w, &report);
-    nevh_ensemble_free(e);
+    else if (parameters && w->scene.model &&
+             nevh__variants_alike(s, &w->scene, &w->variant))
+        share(w);
+    else if (parameters && !apart && nevh__lane_members_pay(w))
+        nevh__lane_members_add(w); /* with others */
+    else
+        run_own(w);
     nevh__variant_free(&w->variant);
 }
 
-/* 0 if two members of the list have the same parameters; less than 0 if a comes
-   first. */
+/* 0 if two members of the list have the same parameters; less than 0 if those of
+   a are smaller. */
 static int compare(const nevh__worker *w, size_t a, size_t b) {
     const nevh__scene_ensemble *e = w->sweep->ensemble;
     for (size_t i = 0; i < e->n_varied; i++) {
@@ -289,19 +307,10 @@ static int compare(const nevh__worker *w, size_t a, size_t b) {
         if (e->varied[i].is == NEVH__PARAMETER && x != y)
             return x < y ? -1 : 1;
     }
-    return a < b ? -1 : a > b;
+    return 0;
 }
 
-static bool same_group(const nevh__worker *w, size_t a, size_t b) {
-    const nevh__scene_ensemble *e = w->sweep->ensemble;
-    for (size_t i = 0; i < e->n_varied; i++)
-        if (e->varied[i].is == NEVH__PARAMETER &&
-            w->varied[a * e->n_varied + i] != w->varied[b * e->n_varied + i])
-            return false;
-    return true;
-}
-
-/* Insertion sort: chunks are short, and mostly in order. */
+/* Insertion sort, which is stable: chunks are short, and mostly in order. */
 static void sort(nevh__worker *w) {
     for (size_t i = 0; i < w->count; i++) {
         size_t k = i;
@@ -313,8 +322,7 @@ static void sort(nevh__worker *w) {
 
 /* Members that are left, each apart. */
 static void run_left(nevh__worker *w, const size_t left[], size_t count) {
-    for (size_t i = 0; i < count && !w->sweep->stopped && !w->sweep->ending;
-         i++) {
+    for (size_t i = 0; i < count && goes_on(w->sweep); i++) {
         w->at = left[i];
         w->group_end = w->at + 1;
         run_group(w, w->varied + w->order[w->at] * w->sweep->ensemble->n_varied,
@@ -327,11 +335,11 @@ static void run_chunk_by_groups(nevh__worker *w) {
         varied_values(w, w->list[i],
                       w->varied + i * w->sweep->ensemble->n_varied);
     sort(w);
-    while (w->at < w->count && !w->sweep->stopped && !w->sweep->ending) {
+    while (w->at < w->count && goes_on(w->sweep)) {
         size_t first = w->order[w->at];
         w->group_end = w->at + 1;
         while (w->group_end < w->count &&
-               same_group(w, first, w->order[w->group_end]))
+               compare(w, first, w->order[w->group_end]) == 0)
             w->group_end++;
         run_group(w, w->varied + first * w->sweep->ensemble->n_varied, false);
     }

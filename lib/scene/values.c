@@ -97,19 +97,28 @@ static void add_index(nevh__formula_error *error, const nevh__index *index) {
              index->name, index->value);
 }
 
+bool nevh__scene_numbers_take(nevh_scene *s, nevh__scene_model *m, size_t count,
+                              nevh__scene_numbers *to) {
+    to->near = nevh__pool_take(&m->pool, count, sizeof *to->near);
+    to->wide =
+        m->exact ? nevh__pool_take(&m->pool, count, sizeof *to->wide) : NULL;
+    return (to->near && (to->wide || !m->exact)) || nevh__scene_no_memory(s);
+}
+
 static bool values_by_index(nevh_scene *s, const nevh__scene_model *m,
                             const nevh__statement *statement,
                             const nevh__piece *value, size_t count,
-                            double values[], nevh__wide wide[]) {
+                            nevh__scene_numbers to) {
     nevh__formula_error error = {0};
     nevh__tree *tree = nevh__piece_tree(s, value);
     int status = 0;
     size_t work = 0;
     for (size_t k = 0; tree && !status && k < count; k++) {
         nevh__index index = {statement->head.index, (long)k + 1, &work};
-        status = nevh__tree_number(tree, m->names, &index, &values[k], &error);
-        if (wide && !status)
-            status = nevh__tree_wide(tree, m->names, &index, &wide[k], &error);
+        status = nevh__tree_number(tree, m->names, &index, &to.near[k], &error);
+        if (to.wide && !status)
+            status =
+                nevh__tree_wide(tree, m->names, &index, &to.wide[k], &error);
         if (status)
             add_index(&error, &index);
     }
@@ -119,17 +128,17 @@ static bool values_by_index(nevh_scene *s, const nevh__scene_model *m,
 
 bool nevh__head_values(nevh_scene *s, nevh__scene_model *m,
                        const nevh__statement *statement,
-                       const nevh__piece *value, size_t count, double values[],
-                       nevh__wide wide[]) {
+                       const nevh__piece *value, size_t count,
+                       nevh__scene_numbers to) {
     size_t given;
     if (statement->head.index)
-        return values_by_index(s, m, statement, value, count, values, wide);
+        return values_by_index(s, m, statement, value, count, to);
     nevh__piece *parts = nevh__piece_list(s, &m->pool, value, &given);
     if (!parts)
         return false;
     for (size_t k = 0; k < given && k < count; k++)
-        if (!nevh__piece_number(s, m, &parts[k], &values[k]) ||
-            (wide && !nevh__piece_wide(s, m, &parts[k], &wide[k])))
+        if (!nevh__piece_number(s, m, &parts[k], &to.near[k]) ||
+            (to.wide && !nevh__piece_wide(s, m, &parts[k], &to.wide[k])))
             return false;
     if (given != 1 && given != count)
         return nevh__scene_fail(
@@ -137,9 +146,9 @@ bool nevh__head_values(nevh_scene *s, nevh__scene_model *m,
             "%s takes %zu value%s, not %zu", statement->head.name, count,
             count == 1 ? "" : "s", given);
     for (size_t k = given; k < count; k++) {
-        values[k] = values[0];
-        if (wide)
-            wide[k] = wide[0];
+        to.near[k] = to.near[0];
+        if (to.wide)
+            to.wide[k] = to.wide[0];
     }
     return true;
 }
@@ -160,17 +169,14 @@ static bool add_parameter(nevh_scene *s, nevh__scene_model *m,
     from = from ? from : statement;
     if (!nevh__head_shape(s, m, statement, &shape))
         return false;
-    double *values = nevh__pool_take(&m->pool, shape.count, sizeof *values);
-    nevh__wide *wide =
-        m->exact ? nevh__pool_take(&m->pool, shape.count, sizeof *wide) : NULL;
-    if (!values || (m->exact && !wide))
-        return nevh__scene_no_memory(s);
-    if (!nevh__head_values(s, m, from, &from->value, shape.count, values, wide))
+    nevh__scene_numbers values;
+    if (!nevh__scene_numbers_take(s, m, shape.count, &values) ||
+        !nevh__head_values(s, m, from, &from->value, shape.count, values))
         return false;
-    nevh__override(s, name, values);
+    nevh__override(s, name, values.near);
     nevh__formula_error error = {0};
     return !nevh__names_add_wide(m->names, name, shape.array ? shape.count : 0,
-                                 values, wide, &error) ||
+                                 values.near, values.wide, &error) ||
            nevh__scene_fail_formula(s, &statement->key, &error);
 }
 

@@ -212,34 +212,10 @@ nevh_ensemble_options nevh__variant_options(const nevh_sweep *s,
                                    .stop = x->stop};
 }
 
-int nevh__variant_start(const nevh_sweep *s, const nevh__variant *x,
-                        double varied[], double q[], double p[], double v[],
-                        nevh__report *report) {
+/* Finds what is solved for, one after the other. */
+static int solve(const nevh_sweep *s, const nevh__variant *x, double varied[],
+                 double q[], double p[], nevh__report *report) {
     const nevh__scene_ensemble *e = s->ensemble;
-    nevh__scene_model m = *x->model;
-    bool any = false;
-    memcpy(q, m.q, m.n * sizeof *q);
-    memcpy(p, m.p, m.n * sizeof *p);
-    memcpy(v, m.v, m.n * sizeof *v);
-    for (size_t k = 0; k < m.n; k++)
-        any |= e->by_velocity[k];
-    for (size_t i = 0; i < e->n_varied; i++) {
-        const nevh__varied *is = &e->varied[i];
-        double *to = is->is == NEVH__COORDINATE ? q
-                     : is->is == NEVH__MOMENTUM ? p
-                     : is->is == NEVH__VELOCITY ? v
-                                                : NULL;
-        if (to)
-            to[is->index] = varied[i];
-    }
-    m.v = v;
-    m.by_velocity = e->by_velocity;
-    for (size_t k = 0; any && k < m.n; k++)
-        if (e->by_velocity[k])
-            p[k] = 0; /* until it is found */
-    int status = any ? nevh__momenta_find(&m, q, p, report) : NEVH_OK;
-    if (status)
-        return status;
     for (size_t i = 0; i < e->n_varied; i++) {
         const nevh__varied *is = &e->varied[i];
         if (is->how != NEVH__VARY_SOLVE)
@@ -254,6 +230,39 @@ int nevh__variant_start(const nevh_sweep *s, const nevh__variant *x,
                               "%.9g finds",
                               is->name, is->statement->value.text, is->a);
     }
+    return NEVH_OK;
+}
+
+int nevh__variant_start(const nevh_sweep *s, const nevh__variant *x,
+                        double varied[], double q[], double p[], double v[],
+                        nevh__report *report) {
+    const nevh__scene_ensemble *e = s->ensemble;
+    nevh__scene_model m = *x->model;
+    bool any = false;
+    memcpy(q, m.q, m.n * sizeof *q);
+    memcpy(p, m.p, m.n * sizeof *p);
+    memcpy(v, m.v, m.n * sizeof *v);
+    for (size_t i = 0; i < e->n_varied; i++) {
+        const nevh__varied *is = &e->varied[i];
+        double *to = is->is == NEVH__COORDINATE ? q
+                     : is->is == NEVH__MOMENTUM ? p
+                     : is->is == NEVH__VELOCITY ? v
+                                                : NULL;
+        if (to)
+            to[is->index] = varied[i];
+    }
+    for (size_t k = 0; k < m.n; k++) {
+        any |= e->by_velocity[k];
+        if (e->by_velocity[k])
+            p[k] = 0; /* until it is found */
+    }
+    m.v = v;
+    m.by_velocity = e->by_velocity;
+    int status = any ? nevh__momenta_find(&m, q, p, report) : NEVH_OK;
+    if (!status)
+        status = solve(s, x, varied, q, p, report);
+    if (status)
+        return status;
     const char *effect =
         nevh__effect_not_finite(m.system, m.run.t_start, q, p, x->room);
     return effect ? nevh__fail(report, NEVH_EDOM,
