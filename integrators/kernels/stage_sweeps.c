@@ -145,9 +145,10 @@ void nevh__sweeps_free(nevh__sweeps *s) {
 static int ask(const nevh__sweeps *s, bool q, bool p) {
     const nevh__stage_step *x = &s->x;
     double *dh_dp = x->gradient, *dh_dq = dh_dp + x->n * x->stride;
-    return nevh__work_gradient_padded(s->work, x->stride, s->used, s->times,
-                                      x->points, x->points + x->half,
-                                      q ? dh_dq : NULL, p ? dh_dp : NULL);
+    return nevh__work_gradient_padded(
+        s->work, s->used,
+        &(nevh__places){x->stride, s->times, x->points, x->points + x->half,
+                        q ? dh_dq : NULL, p ? dh_dp : NULL});
 }
 
 /* An exact, planned gradient is not checked yet. */

@@ -23,10 +23,10 @@ static void gather(const nevh_field *f, const nevh__planned *term,
 
 /* Adds the derivative with respect to variable k at the column gathered. */
 static int add_column(nevh_field *f, nevh__planned *term, const nevh__block *b,
-                      size_t column, size_t instance, size_t lane, size_t k,
-                      double *out) {
+                      size_t column, size_t k, double *out) {
     const nevh_term *decl = &term->term->decl;
-    size_t i = nevh__index(term, instance, k);
+    size_t i = nevh__index(term, b->group + column / b->lanes, k);
+    size_t lane = b->lane + column % b->lanes;
     double h[2] = {0, 0};
     const double(*one)[2] = (const double(*)[2])f->one;
     f->one[2 * k + 1] = step;
@@ -51,12 +51,10 @@ int nevh__gradient_complex(nevh_field *f, nevh__planned *term,
     int status = NEVH_OK;
     while (!status && nevh__block_next(f, term, &b))
         for (size_t column = 0; !status && column < b.used; column++) {
-            size_t instance = b.group + column / b.lanes;
-            size_t lane = b.lane + column % b.lanes;
             gather(f, term, &b, column);
             term->values += end - first;
             for (size_t k = first; !status && k < end; k++)
-                status = add_column(f, term, &b, column, instance, lane, k,
+                status = add_column(f, term, &b, column, k,
                                     k < term->nq ? at->dh_dq : at->dh_dp);
         }
     return status;

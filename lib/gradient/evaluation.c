@@ -240,19 +240,16 @@ static bool take_single(nevh_field *f, const nevh__places *at) {
            0;
 }
 
-int nevh__field_gradient_padded(nevh_field *f, size_t width, size_t used,
-                                const double t[], const double q[],
-                                const double p[], double dh_dq[],
-                                double dh_dp[]) {
-    const nevh__places at = {width, t, q, p, dh_dq, dh_dp};
+int nevh__field_gradient_padded(nevh_field *f, size_t used,
+                                const nevh__places *at) {
     int status = nevh__field_ready(f);
     if (status)
         return status;
-    if (dh_dq)
+    if (at->dh_dq)
         f->gradients += used;
-    if (width == 1 && !f->lanes && take_single(f, &at))
+    if (at->width == 1 && !f->lanes && take_single(f, at))
         return NEVH_OK;
-    return nevh__field_terms(f, &at);
+    return nevh__field_terms(f, at);
 }
 
 int nevh__field_whole_gradient(nevh_field *f, size_t width, const double t[],
@@ -279,5 +276,6 @@ int nevh_field_gradient(nevh_field *f, size_t width, const double t[],
                         double dh_dp[]) {
     if (!f)
         return NEVH_EINVAL;
-    return nevh__field_gradient_padded(f, width, width, t, q, p, dh_dq, dh_dp);
+    return nevh__field_gradient_padded(
+        f, width, &(nevh__places){width, t, q, p, dh_dq, dh_dp});
 }

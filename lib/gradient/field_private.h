@@ -209,10 +209,8 @@ bool nevh__exact_gather_plan(nevh_field *);
 bool nevh__exact_block_broadcasts(const nevh_field *);
 
 /* nevh_field_gradient, of which `used` lanes count. */
-int nevh__field_gradient_padded(nevh_field *, size_t width, size_t used,
-                                const double t[], const double q[],
-                                const double p[], double dh_dq[],
-                                double dh_dp[]);
+int nevh__field_gradient_padded(nevh_field *, size_t used,
+                                const nevh__places *);
 
 /* The noise of dH/dq and dH/dp from rounding in the values of H at one state (width
    1): the sum of epsilon |h| / delta over all that reads each variable, n each.

@@ -32,47 +32,49 @@ static void fill(double *row, size_t stride, double value, size_t count,
         row[i] = value;
 }
 
-void nevh__sample_line(const nevh__step_selection *e, const nevh__planned *term,
-                       size_t instance, size_t k, size_t at, size_t count,
+void nevh__sample_line(const nevh__axis *a, size_t at, size_t count,
                        const double move[], double x[], double h[]) {
-    nevh_field *f = e->field;
+    nevh_field *f = a->e->field;
+    const nevh__planned *term = a->term;
     const nevh_term *decl = &term->term->decl;
     size_t stride = nevh__padded(count), n = f->n;
-    const double *q = e->samples.q + at * n, *p = e->samples.p + at * n;
+    const double *q = a->e->samples.q + at * n, *p = a->e->samples.p + at * n;
     double *row = f->rows;
     for (size_t j = 0; j < term->nv + decl->nc; j++, row += stride) {
         double value = j >= term->nv
-                           ? decl->c[instance * decl->nc + j - term->nv]
-                       : j < term->nq ? q[nevh__index(term, instance, j)]
-                                      : p[nevh__index(term, instance, j)];
-        fill(row, stride, value, j == k ? count : 0, move);
+                           ? decl->c[a->instance * decl->nc + j - term->nv]
+                       : j < term->nq ? q[nevh__index(term, a->instance, j)]
+                                      : p[nevh__index(term, a->instance, j)];
+        fill(row, stride, value, j == a->k ? count : 0, move);
     }
-    fill(f->times, stride, e->samples.t[at], k == NEVH__TIME ? count : 0, move);
+    fill(f->times, stride, a->e->samples.t[at], a->k == NEVH__TIME ? count : 0,
+         move);
     double *rows_p = f->rows + term->nq * stride;
     nevh__term_values(term->term, f->portable, stride, count,
                       decl->time ? f->times : f->zeros, f->rows, rows_p,
                       rows_p + term->np * stride, f->h, f->one);
-    memcpy(x, k == NEVH__TIME ? f->times : f->rows + k * stride,
+    memcpy(x, a->k == NEVH__TIME ? f->times : f->rows + a->k * stride,
            count * sizeof *x);
     memcpy(h, f->h, count * sizeof *h);
 }
 
-double nevh__sample_rounding(const nevh__step_selection *e,
-                             const nevh__planned *term, size_t instance,
-                             size_t k, size_t at, double move, double h) {
-    const nevh_term *decl = &term->term->decl;
-    size_t n = e->field->n;
-    double *x = e->field->one;
+double nevh__sample_rounding(const nevh__axis *a, size_t at, double move,
+                             double h) {
+    const nevh_term *decl = &a->term->term->decl;
+    size_t n = a->e->field->n;
+    double *x = a->e->field->one;
     if (decl->value != nevh__tape_value)
         return DBL_EPSILON * fabs(h);
-    for (size_t j = 0; j < term->nv; j++) {
-        const double *from = j < term->nq ? e->samples.q : e->samples.p;
-        x[j] = from[at * n + nevh__index(term, instance, j)];
-        x[j] += j == k ? move : 0;
+    for (size_t j = 0; j < a->term->nv; j++) {
+        const double *from =
+            j < a->term->nq ? a->e->samples.q : a->e->samples.p;
+        x[j] = from[at * n + nevh__index(a->term, a->instance, j)];
+        x[j] += j == a->k ? move : 0;
     }
     return nevh__tape_rounding(
-        e->samples.t[at] + (k == NEVH__TIME ? move : 0), x, x + term->nq,
-        decl->nc ? decl->c + instance * decl->nc : NULL, decl->params);
+        a->e->samples.t[at] + (a->k == NEVH__TIME ? move : 0), x,
+        x + a->term->nq, decl->nc ? decl->c + a->instance * decl->nc : NULL,
+        decl->params);
 }
 
 /* The variation of h within one distance: as a whole, the part that a quadratic
@@ -108,22 +110,18 @@ static bool too_far(const variation *v) {
 
 /* A formula may add up numbers that are far larger than its values: then the
    rest may be rounding of these. */
-static void allow_for_rounding(const nevh__step_selection *e,
-                               const nevh__planned *term, size_t instance,
-                               size_t k, double distance, const double h[3],
-                               variation *v) {
+static void allow_for_rounding(const nevh__axis *a, double distance,
+                               const double h[3], variation *v) {
     const double moves[] = {0, distance, -distance};
     double most = 0;
     for (size_t i = 0; i < 3; i++)
-        most = larger(most, nevh__sample_rounding(e, term, instance, k, e->at,
-                                                  moves[i], h[i]));
+        most = larger(most, nevh__sample_rounding(a, a->e->at, moves[i], h[i]));
     if (isfinite(most) && isfinite(v->whole))
         v->rounding = fmax(v->rounding, 16 * most);
 }
 
 /* Within a distance, twice that, and so on. */
-static void vary_on(const nevh__step_selection *e, const nevh__planned *term,
-                    size_t instance, size_t k, double distance, size_t count,
+static void vary_on(const nevh__axis *a, double distance, size_t count,
                     variation v[]) {
     double move[3 + 2 * MOST_AHEAD], x[3 + 2 * MOST_AHEAD];
     double h[3 + 2 * MOST_AHEAD];
@@ -132,19 +130,18 @@ static void vary_on(const nevh__step_selection *e, const nevh__planned *term,
         move[2 * i - 1] = i > 1 ? 2 * move[2 * i - 3] : distance / 2;
         move[2 * i] = -move[2 * i - 1];
     }
-    nevh__sample_line(e, term, instance, k, e->at, 3 + 2 * count, move, x, h);
+    nevh__sample_line(a, a->e->at, 3 + 2 * count, move, x, h);
     for (size_t i = 0; i < count; i++, distance *= 2) {
         const double outer[] = {h[0], h[3 + 2 * i], h[4 + 2 * i]};
         v[i] = compare(h[0], h + 1 + 2 * i, h + 3 + 2 * i);
         if (too_far(&v[i]))
-            allow_for_rounding(e, term, instance, k, distance, outer, &v[i]);
+            allow_for_rounding(a, distance, outer, &v[i]);
     }
 }
 
-static variation vary(const nevh__step_selection *e, const nevh__planned *term,
-                      size_t instance, size_t k, double distance) {
+static variation vary(const nevh__axis *a, double distance) {
     variation v;
-    vary_on(e, term, instance, k, distance, 1, &v);
+    vary_on(a, distance, 1, &v);
     return v;
 }
 
@@ -158,42 +155,38 @@ static bool alike(const variation *a, const variation *b) {
 
 /* True if the variation is rounding of an argument, as of cos(x/1e-30) far from
    where it is resolved.  Unlike noise, it is smaller at shorter distances. */
-static bool is_lost(const nevh__step_selection *e, const nevh__planned *term,
-                    size_t instance, size_t k, double distance,
-                    const variation *v) {
+static bool is_lost(const nevh__axis *a, double distance, const variation *v) {
     static const double less = 0x1p-4;
     if (v->rest <= not_quadratic * v->whole || v->whole > v->rounding)
         return false;
     double nearer = ldexp(distance, -LEAP);
-    return vary(e, term, instance, k, nearer).rounding < less * v->rounding;
+    return vary(a, nearer).rounding < less * v->rounding;
 }
 
 /* Within a distance of many periods, five values may happen to be those of a
    quadratic.  Somewhere nearer they are not, although they vary as much; little
    ripples do not count.  Returns where, or else the distance. */
-static double unfold(const nevh__step_selection *e, const nevh__planned *term,
-                     size_t instance, size_t k, double distance) {
-    double whole = vary(e, term, instance, k, distance).whole;
+static double unfold(const nevh__axis *a, double distance) {
+    double whole = vary(a, distance).whole;
     for (int down = NEARER; whole > 0 && down <= NEAREST; down += NEARER) {
         double nearer = ldexp(distance, -down);
-        variation v = vary(e, term, instance, k, nearer);
+        variation v = vary(a, nearer);
         if (v.whole >= as_much * whole &&
-            (too_far(&v) || is_lost(e, term, instance, k, nearer, &v)))
+            (too_far(&v) || is_lost(a, nearer, &v)))
             return nearer;
     }
     return distance;
 }
 
 /* In leaps below `distance`, and how many; false where there is no length. */
-static bool leap_down(const nevh__step_selection *e, const nevh__planned *term,
-                      size_t instance, size_t k, double *distance, int *leaps) {
-    variation v = vary(e, term, instance, k, *distance);
+static bool leap_down(const nevh__axis *a, double *distance, int *leaps) {
+    variation v = vary(a, *distance);
     while (*leaps < FARTHEST / LEAP &&
-           (too_far(&v) || is_lost(e, term, instance, k, *distance, &v))) {
+           (too_far(&v) || is_lost(a, *distance, &v))) {
         variation before = v;
         ++*leaps;
         *distance = ldexp(*distance, -LEAP);
-        v = vary(e, term, instance, k, *distance);
+        v = vary(a, *distance);
         if (alike(&before, &v))
             return false;
     }
@@ -209,16 +202,15 @@ static bool is_overflow(const variation *v, double times) {
 
 /* Twice the distance again and again, at most so often, until that is too far.
    Several are asked for at once, the more the longer it takes. */
-static double double_up(const nevh__step_selection *e,
-                        const nevh__planned *term, size_t instance, size_t k,
-                        double distance, const variation *here, int most) {
+static double double_up(const nevh__axis *a, double distance,
+                        const variation *here, int most) {
     variation v[MOST_AHEAD];
     size_t ahead = FEWEST_AHEAD;
     double whole = here->whole, first = distance;
     bool seen = whole > here->rounding;
     for (int done = 0; done < most;
          ahead = 2 * ahead < MOST_AHEAD ? 2 * ahead : MOST_AHEAD) {
-        vary_on(e, term, instance, k, 2 * distance, ahead, v);
+        vary_on(a, 2 * distance, ahead, v);
         for (size_t i = 0; i < ahead && done < most; i++, done++) {
             if (!(whole < overflowing))
                 return seen ? INFINITY : NAN;
@@ -234,39 +226,34 @@ static double double_up(const nevh__step_selection *e,
     return seen ? INFINITY : NAN;
 }
 
-double nevh__curve_length(const nevh__step_selection *e,
-                          const nevh__planned *term, size_t instance, size_t k,
-                          double guess) {
-    variation v = vary(e, term, instance, k, guess);
-    variation aside = vary(e, term, instance, k, askew * guess);
+double nevh__curve_length(const nevh__axis *a, double guess) {
+    variation v = vary(a, guess);
+    variation aside = vary(a, askew * guess);
     bool periods = !(v.whole > v.rounding) && aside.whole > aside.rounding;
     double distance = periods ? askew * guess : guess;
     int leaps = 0;
     double nearer = distance;
     do {
         distance = nearer;
-        if (!leap_down(e, term, instance, k, &distance, &leaps))
+        if (!leap_down(a, &distance, &leaps))
             return NAN;
-        nearer = unfold(e, term, instance, k, distance);
+        nearer = unfold(a, distance);
     } while (nearer < distance);
-    v = vary(e, term, instance, k, distance);
-    return double_up(e, term, instance, k, distance, &v,
-                     leaps ? LEAP : FARTHEST);
+    v = vary(a, distance);
+    return double_up(a, distance, &v, leaps ? LEAP : FARTHEST);
 }
 
 /* The distance over which an instance varies by `energy`: in leaps below it,
    then up by twos.  NAN: it does not vary so much. */
-static double energy_length(const nevh__step_selection *e,
-                            const nevh__planned *term, size_t instance,
-                            size_t k, double guess, double energy) {
+static double energy_length(const nevh__axis *a, double guess, double energy) {
     double distance = guess;
     for (int i = 0; i < FARTHEST / LEAP; i++) {
-        if (!(vary(e, term, instance, k, distance).whole >= energy))
+        if (!(vary(a, distance).whole >= energy))
             break;
         distance = ldexp(distance, -LEAP);
     }
     for (int i = 0; i < FARTHEST; i++) {
-        if (!(vary(e, term, instance, k, distance).whole < energy))
+        if (!(vary(a, distance).whole < energy))
             return distance;
         distance *= 2;
     }
@@ -313,10 +300,12 @@ static void visit_all(nevh__step_selection *e, visit_fn visit, double *energy) {
 /* Finite lengths, and the largest variation of H within them. */
 static void find_curved(nevh__step_selection *e, const nevh__planned *term,
                         size_t instance, size_t k, size_t i, double *energy) {
-    double length = nevh__curve_length(e, term, instance, k, first_guess(e, i));
+    double length = nevh__curve_length(&(nevh__axis){e, term, instance, k},
+                                       first_guess(e, i));
     if (!isfinite(length))
         return;
-    *energy = fmax(*energy, vary(e, term, instance, k, length).whole);
+    *energy =
+        fmax(*energy, vary(&(nevh__axis){e, term, instance, k}, length).whole);
     if (e->length[i] > 0 && e->length[i] <= length)
         return;
     e->length[i] = length;
@@ -328,7 +317,8 @@ static void find_within(nevh__step_selection *e, const nevh__planned *term,
                         size_t instance, size_t k, size_t i, double *energy) {
     if (!(e->length[i] > 0))
         return;
-    double whole = vary(e, term, instance, k, e->length[i]).whole;
+    double whole =
+        vary(&(nevh__axis){e, term, instance, k}, e->length[i]).whole;
     *energy = fmax(*energy, isfinite(whole) ? whole : 0);
 }
 
@@ -338,7 +328,7 @@ static void find_energy(nevh__step_selection *e, const nevh__planned *term,
     size_t n = e->field->n;
     const nevh__samples *s = &e->samples;
     double x = i < n ? s->q[e->at * n + i] : s->p[e->at * n + i - n];
-    double whole = vary(e, term, instance, k, fabs(x)).whole;
+    double whole = vary(&(nevh__axis){e, term, instance, k}, fabs(x)).whole;
     *energy = fmax(*energy, isfinite(whole) ? whole : 0);
 }
 
@@ -348,7 +338,7 @@ static void find_from_rest(nevh__step_selection *e, const nevh__planned *term,
                            size_t instance, size_t k, size_t i,
                            double *energy) {
     double size = e->sizes ? e->sizes[i] : i < e->field->n ? 1 : 0;
-    double whole = vary(e, term, instance, k, size).whole;
+    double whole = vary(&(nevh__axis){e, term, instance, k}, size).whole;
     *energy = fmax(*energy, isfinite(whole) ? whole : 0);
 }
 
@@ -375,7 +365,8 @@ static void find_straight(nevh__step_selection *e, const nevh__planned *term,
     if (curved)
         return;
     if (*energy > 0)
-        length = energy_length(e, term, instance, k, guess, *energy);
+        length =
+            energy_length(&(nevh__axis){e, term, instance, k}, guess, *energy);
     if (isnan(length))
         return;
     e->length[i] = e->length[i] < 0 ? -fmin(-e->length[i], length) : -length;
@@ -433,7 +424,8 @@ static void add_changes(const nevh__step_selection *e,
         if (nevh__probed(term, k) == k) {
             const double move[3] = {0, e->length[i], -e->length[i]};
             double x[3], h[3];
-            nevh__sample_line(e, term, instance, k, e->at, 3, move, x, h);
+            nevh__sample_line(&(nevh__axis){e, term, instance, k}, e->at, 3,
+                              move, x, h);
             up = h[1] - h[0];
             down = h[2] - h[0];
         }

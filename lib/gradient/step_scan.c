@@ -80,12 +80,11 @@ static void take(estimate *level, double usual, double now, double before,
 }
 
 /* As many steps as there is room for, from `from` on; returns how many. */
-static size_t try_steps(const nevh__step_selection *e, const nevh_gradient *g,
-                        const nevh__planned *term, size_t instance, size_t k,
-                        size_t at, double unit, size_t from, differences *two,
+static size_t try_steps(const nevh__axis *a, const nevh_gradient *g, size_t at,
+                        double unit, size_t from, differences *two,
                         differences *full) {
     double move[BUFFER], x[BUFFER], h[BUFFER];
-    size_t fit = e->field->capacity / (2 * g->offsets);
+    size_t fit = a->e->field->capacity / (2 * g->offsets);
     size_t rest = LEVELS + 1 - from, count = rest < fit ? rest : fit;
     double power = ldexp(1, LOWEST - 1 + (int)from);
     for (size_t i = 0; i < count; i++, power *= 2) {
@@ -95,8 +94,7 @@ static size_t try_steps(const nevh__step_selection *e, const nevh_gradient *g,
             move[(2 * j + 1) * count + i] = -(double)(j + 1) * delta;
         }
     }
-    nevh__sample_line(e, term, instance, k, at, 2 * g->offsets * count, move, x,
-                      h);
+    nevh__sample_line(a, at, 2 * g->offsets * count, move, x, h);
     difference(nevh_central2, count, x, h, two->slope + from,
                two->noise + from);
     difference(g, count, x, h, full->slope + from, full->noise + from);
@@ -104,12 +102,11 @@ static size_t try_steps(const nevh__step_selection *e, const nevh_gradient *g,
 }
 
 /* Scans from the shortest step at one sample. */
-static void scan_at(const nevh__step_selection *e, const nevh_gradient *g,
-                    const nevh__planned *term, size_t instance, size_t k,
-                    size_t at, double unit, scan_result *l) {
+static void scan_at(const nevh__axis *a, const nevh_gradient *g, size_t at,
+                    double unit, scan_result *l) {
     differences two, full;
     for (size_t from = 0; from <= LEVELS;)
-        from += try_steps(e, g, term, instance, k, at, unit, from, &two, &full);
+        from += try_steps(a, g, at, unit, from, &two, &full);
     for (size_t i = 0; i < LEVELS; i++) {
         take(&l->two[i], l->usual, two.slope[i + 1], two.slope[i],
              two.noise[i + 1]);
@@ -228,14 +225,12 @@ static size_t sample_stride(const nevh__step_selection *e,
 }
 
 /* The median of the derivative's sizes at samples from `at` on. */
-static double usual_slope(const nevh__step_selection *e,
-                          const nevh__planned *term, size_t instance, size_t k,
-                          double unit, size_t at) {
+static double usual_slope(const nevh__axis *a, double unit, size_t at) {
     const double move[2] = {ldexp(unit, -8), -ldexp(unit, -8)};
     double x[2], h[2], sorted[NEVH__MOST_SAMPLES];
     size_t count = 0;
-    for (; at < e->samples.count; at += sample_stride(e, term)) {
-        nevh__sample_line(e, term, instance, k, at, 2, move, x, h);
+    for (; at < a->e->samples.count; at += sample_stride(a->e, a->term)) {
+        nevh__sample_line(a, at, 2, move, x, h);
         double slope = fabs(nevh__chord_slope(nevh_central2, 1, x, h));
         size_t i = count;
         if (!isfinite(slope))
@@ -247,25 +242,24 @@ static double usual_slope(const nevh__step_selection *e,
     return count ? sorted[count / 2] : 0;
 }
 
-nevh__step nevh__scan_line(const nevh__step_selection *e,
-                           const nevh_gradient *g, const nevh__planned *term,
-                           size_t instance, size_t k, double length) {
+nevh__step nevh__scan_line(const nevh__axis *a, const nevh_gradient *g,
+                           double length) {
     double unit = exp2(round(log2(length)));
     scan_result l;
     memset(&l, 0, sizeof l);
     /* The pilot may linger where symmetry makes the derivative vanish. */
-    l.usual = fmax(usual_slope(e, term, instance, k, unit, 0),
-                   usual_slope(e, term, instance, k, unit, e->neighbours));
-    for (size_t at = 0; at < e->samples.count; at += sample_stride(e, term))
-        scan_at(e, g, term, instance, k, at, unit, &l);
-    return choose(g, &l, unit, has_kinks(term));
+    l.usual =
+        fmax(usual_slope(a, unit, 0), usual_slope(a, unit, a->e->neighbours));
+    for (size_t at = 0; at < a->e->samples.count;
+         at += sample_stride(a->e, a->term))
+        scan_at(a, g, at, unit, &l);
+    return choose(g, &l, unit, has_kinks(a->term));
 }
 
-static nevh__step scan(const nevh__step_selection *e, const nevh__planned *term,
-                       size_t instance, size_t k) {
-    size_t i = nevh__index(term, instance, k);
-    double length = e->length[k < term->nq ? i : e->field->n + i];
-    return nevh__scan_line(e, e->field->gradient, term, instance, k, length);
+static nevh__step scan(const nevh__axis *a) {
+    size_t i = nevh__index(a->term, a->instance, a->k);
+    double length = a->e->length[a->k < a->term->nq ? i : a->e->field->n + i];
+    return nevh__scan_line(a, a->e->field->gradient, length);
 }
 
 void nevh__scan_steps(nevh__step_selection *e, nevh__planned *term) {
@@ -275,7 +269,7 @@ void nevh__scan_steps(nevh__step_selection *e, nevh__planned *term) {
         size_t from = nevh__probed(term, k);
         nevh__step *own = &term->steps[nevh__step_at(term, instance, k)];
         if (instance % stride == 0 && from == k)
-            *own = scan(e, term, instance, k);
+            *own = scan(&(nevh__axis){e, term, instance, k});
         else if (instance % stride == 0)
             *own = term->steps[nevh__step_at(term, instance, from)];
         term->delta[at] = own->delta;

@@ -48,23 +48,28 @@ typedef struct {
     bool scales_alone; /* no steps are tried: the pilot ends with the scales */
 } nevh__step_selection;
 
+/* A variable of an instance, or the time, along which values are taken. */
+#define NEVH__TIME SIZE_MAX
+typedef struct {
+    const nevh__step_selection *e;
+    const nevh__planned *term;
+    size_t instance, k;
+} nevh__axis;
+
 /* Distances between the instances, and between the variables of one kind, that
    are looked at. */
 size_t nevh__stride(size_t count);
 /* The variable whose step variable k takes. */
 size_t nevh__probed(const nevh__planned *, size_t k);
 
-/* Values of an instance at sample `at`, its variable k, or the time, moved by
-   each of `count` (up to the field's capacity) amounts; x: what was moved. */
-#define NEVH__TIME SIZE_MAX
-void nevh__sample_line(const nevh__step_selection *, const nevh__planned *,
-                       size_t instance, size_t k, size_t at, size_t count,
+/* Values at sample `at`, moved along an axis by each of `count` (up to the field's
+   capacity) amounts; x: what was moved. */
+void nevh__sample_line(const nevh__axis *, size_t at, size_t count,
                        const double move[], double x[], double h[]);
 /* The largest effect of rounding on an instance's value at a sample: for a formula,
    the rounding of all its operations; for other code, that of its value h. */
-double nevh__sample_rounding(const nevh__step_selection *,
-                             const nevh__planned *, size_t instance, size_t k,
-                             size_t at, double move, double h);
+double nevh__sample_rounding(const nevh__axis *, size_t at, double move,
+                             double h);
 
 /* Takes the states given and fills length; a status, recorded in the field. */
 int nevh__step_selection_init(nevh__step_selection *, nevh_field *,
@@ -72,8 +77,7 @@ int nevh__step_selection_init(nevh__step_selection *, nevh_field *,
 void nevh__step_selection_clear(nevh__step_selection *);
 /* The length of one variable of one instance, or of time: INFINITY where it is
    quadratic as far as one can see, NAN where nothing is to be seen. */
-double nevh__curve_length(const nevh__step_selection *, const nevh__planned *,
-                          size_t instance, size_t k, double guess);
+double nevh__curve_length(const nevh__axis *, double guess);
 /* Fills length with the shortest over the lanes, of which it makes those
    samples that matter. */
 void nevh__find_lengths(nevh__step_selection *);
@@ -107,8 +111,7 @@ void nevh__find_neighbours(nevh__step_selection *);
 int nevh__verify(nevh__step_selection *, const nevh__planned *);
 /* Chooses the step of a method in one variable, or the time, that varies over
    a length. */
-nevh__step nevh__scan_line(const nevh__step_selection *, const nevh_gradient *,
-                           const nevh__planned *, size_t instance, size_t k,
+nevh__step nevh__scan_line(const nevh__axis *, const nevh_gradient *,
                            double length);
 /* Chooses the steps of a term. */
 void nevh__scan_steps(nevh__step_selection *, nevh__planned *);

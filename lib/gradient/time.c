@@ -184,8 +184,10 @@ static double find_length(const nevh__step_selection *e,
     nevh__step_selection here = *e;
     for (here.at = 0; here.at < e->lanes; here.at++)
         for (size_t i = 0; i < count; i += nevh__stride(count))
-            shortest = fmin(shortest, nevh__curve_length(&here, term, i,
-                                                         NEVH__TIME, guess));
+            shortest =
+                fmin(shortest,
+                     nevh__curve_length(
+                         &(nevh__axis){&here, term, i, NEVH__TIME}, guess));
     return shortest;
 }
 
@@ -204,8 +206,8 @@ static nevh__time_step scan(const nevh__step_selection *e,
     size_t count = term->term->decl.count;
     double delta[2] = {INFINITY, INFINITY}; /* of order 8, of order 2 */
     for (size_t i = 0; i < count; i += nevh__stride(count)) {
-        nevh__step step =
-            nevh__scan_line(e, nevh_central8, term, i, NEVH__TIME, length);
+        nevh__step step = nevh__scan_line(&(nevh__axis){e, term, i, NEVH__TIME},
+                                          nevh_central8, length);
         double *least = &delta[step.quadratic];
         *least = fmin(*least, step.delta);
     }

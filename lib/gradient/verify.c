@@ -35,6 +35,10 @@ typedef struct {
     double *own; /* nv derivatives of the term's own */
 } check;
 
+static nevh__axis axis_of(const check *c, size_t k) {
+    return (nevh__axis){c->selection, c->term, c->instance, k};
+}
+
 /* Adds to *noise what rounding or underflow of values may do to it. */
 static double by_difference(const check *c, size_t k, size_t at, double delta,
                             double *noise) {
@@ -45,15 +49,14 @@ static double by_difference(const check *c, size_t k, size_t at, double delta,
         move[2 * j] = (double)(j + 1) * delta;
         move[2 * j + 1] = -move[2 * j];
     }
-    nevh__sample_line(c->selection, c->term, c->instance, k, at, 8, move, x, h);
+    const nevh__axis axis = axis_of(c, k);
+    nevh__sample_line(&axis, at, 8, move, x, h);
     for (size_t j = 0; j < 4; j++) {
         double weight = nevh_central8->weights[j] / (x[2 * j] - x[2 * j + 1]);
         double rounding = 0;
         for (size_t i = 2 * j; i < 2 * j + 2; i++)
             rounding =
-                fmax(rounding,
-                     nevh__sample_rounding(c->selection, c->term, c->instance,
-                                           k, at, move[i], h[i]));
+                fmax(rounding, nevh__sample_rounding(&axis, at, move[i], h[i]));
         *noise += 4 * fabs(weight) * (rounding + underflow);
     }
     return nevh__chord_slope(nevh_central8, 1, x, h);
@@ -65,8 +68,8 @@ static void ask_term(const check *c, size_t at) {
     const nevh__planned *term = c->term;
     const nevh_term *decl = &term->term->decl;
     double move[NEVH__LANES] = {0}, x[NEVH__LANES], h[NEVH__LANES];
-    nevh__sample_line(c->selection, term, c->instance, 0, at, NEVH__LANES, move,
-                      x, h);
+    const nevh__axis axis = axis_of(c, 0);
+    nevh__sample_line(&axis, at, NEVH__LANES, move, x, h);
     double *q = f->rows, *p = q + term->nq * NEVH__LANES;
     double *dp = f->slopes + term->nq * NEVH__LANES;
     decl->gradient(NEVH__LANES, decl->time ? f->times : f->zeros, q, p,
@@ -217,8 +220,8 @@ static void spread(const check *c, size_t at, size_t round) {
     nevh_field *f = c->selection->field;
     double move[NEVH__LANES] = {0}, x[NEVH__LANES], h[NEVH__LANES];
     uint64_t seed = ROUNDS * at + round;
-    nevh__sample_line(c->selection, c->term, c->instance, 0, at, NEVH__LANES,
-                      move, x, h);
+    const nevh__axis axis = axis_of(c, 0);
+    nevh__sample_line(&axis, at, NEVH__LANES, move, x, h);
     for (size_t k = 0; k < c->term->nv; k++)
         for (size_t lane = 1; lane < NEVH__LANES; lane++)
             f->rows[k * NEVH__LANES + lane] +=

@@ -98,20 +98,18 @@ nevh__evaluation nevh__work_plan(const nevh_work *w, size_t lanes,
 int nevh_work_gradient(nevh_work *w, size_t points, const double t[],
                        const double q[], const double p[], double dh_dq[],
                        double dh_dp[]) {
-    return nevh__work_gradient_padded(w, points, points, t, q, p, dh_dq, dh_dp);
+    return nevh__work_gradient_padded(
+        w, points, &(nevh__places){points, t, q, p, dh_dq, dh_dp});
 }
 
-int nevh__work_gradient_padded(nevh_work *w, size_t points, size_t used,
-                               const double t[], const double q[],
-                               const double p[], double dh_dq[],
-                               double dh_dp[]) {
-    int status = nevh__field_gradient_padded(w->field, points, used, t, q, p,
-                                             dh_dq, dh_dp);
+int nevh__work_gradient_padded(nevh_work *w, size_t used,
+                               const nevh__places *at) {
+    int status = nevh__field_gradient_padded(w->field, used, at);
     if (status)
         return nevh__work_fail_field(w, status);
-    return w->transform
-               ? nevh__transform_gradient(w, points, t, q, p, dh_dq, dh_dp)
-               : NEVH_OK;
+    return w->transform ? nevh__transform_gradient(w, at->width, at->t, at->q,
+                                                   at->p, at->dh_dq, at->dh_dp)
+                        : NEVH_OK;
 }
 
 int nevh_work_value(nevh_work *w, size_t points, const double t[],

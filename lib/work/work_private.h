@@ -27,10 +27,7 @@ int nevh__work_noise(nevh_work *, double t, const double q[], const double p[],
                      double noise_q[], double noise_p[]);
 
 /* nevh_work_gradient, where only `used` points count: others fill vectors. */
-int nevh__work_gradient_padded(nevh_work *, size_t points, size_t used,
-                               const double t[], const double q[],
-                               const double p[], double dh_dq[],
-                               double dh_dp[]);
+int nevh__work_gradient_padded(nevh_work *, size_t used, const nevh__places *);
 
 /* Planned gradients of H.  How a kernel's rows hold them is decided here alone.
 
