@@ -49,18 +49,20 @@ static int plan_nodes(nevh_loop *l) {
     return NEVH_OK;
 }
 
+static bool is_loop(const nevh_loop_options *o) {
+    bool good = o->curve && o->times && o->steps && isfinite(o->t0) &&
+                isfinite(o->h) && (o->corners || !o->n_corners);
+    for (size_t i = 0; good && i < o->n_corners; i++)
+        good = o->corners[i] >= 0 && o->corners[i] < 1 &&
+               (!i || o->corners[i] > o->corners[i - 1]);
+    for (size_t i = 1; good && i < o->times; i++)
+        good = o->steps[i] >= o->steps[i - 1];
+    return good;
+}
+
 static int check_options(nevh_loop *l, const nevh_options *o,
                          const nevh_integrator *scheme) {
-    const nevh_loop_options *loop = &l->options;
-    bool good = loop->curve && loop->times && loop->steps &&
-                isfinite(loop->t0) && isfinite(loop->h) &&
-                (loop->corners || !loop->n_corners);
-    for (size_t i = 0; good && i < loop->n_corners; i++)
-        good = loop->corners[i] >= 0 && loop->corners[i] < 1 &&
-               (!i || loop->corners[i] > loop->corners[i - 1]);
-    for (size_t i = 1; good && i < loop->times; i++)
-        good = loop->steps[i] >= loop->steps[i - 1];
-    if (!good)
+    if (!is_loop(&l->options))
         return nevh__fail(&l->report, NEVH_EINVAL,
                           "a loop needs a curve, corners that rise within "
                           "[0, 1), times that rise, and finite t0 and h");

@@ -236,7 +236,7 @@ static bool changes_with_time(const nevh_reference *r) {
            isfinite(nevh_timing_shortest(r->timing, NULL, NULL));
 }
 
-static int make(nevh_reference *r) {
+static int check(nevh_reference *r) {
     int status = nevh_system_status(r->system);
     if (status)
         return nevh__fail(&r->report, status, "%s",
@@ -254,6 +254,13 @@ static int make(nevh_reference *r) {
         return nevh__fail(&r->report, NEVH_EINVAL,
                           "a reference from t = %g to %g has no length", r->t0,
                           r->t1);
+    return NEVH_OK;
+}
+
+static int make(nevh_reference *r) {
+    int status = check(r);
+    if (status)
+        return status;
     if (!(nevh_system_traits(r->system) & NEVH_AUTONOMOUS)) {
         r->timing =
             nevh_timing_new(r->system, r->t0, r->t1, r->start, r->start + r->n);

@@ -296,31 +296,35 @@ static void find_end(nevh_reference *r, double t) {
                    t);
 }
 
+static bool allocate(const nevh_reference *r, chain *c) {
+    c->rates = nevh__array(r->n, sizeof *c->rates);
+    c->value = nevh__array(2 * r->n, sizeof *c->value);
+    c->difference = nevh__array(2 * r->n, sizeof *c->difference);
+    return c->rates && c->value && c->difference;
+}
+
 /* A series run of that tolerance; NULL, with the reason in the report.
    first  a coarser one, or NULL */
 static chain *chain_new(nevh_reference *r, double tolerance,
                         const chain *first) {
     bool parted = first && first->parts;
     chain *c = nevh__array(1, sizeof *c);
-    int status = c ? NEVH_OK : nevh__no_memory(&r->report);
-    if (!status) {
-        *c =
-            (chain){.until = parted ? first->until : r->t1,
-                    .limit = parted ? nevh__reference_wanted / certain : apart,
-                    .foreseen = first ? (double)first->count : 0,
-                    .rates = nevh__array(r->n, sizeof *c->rates),
-                    .value = nevh__array(2 * r->n, sizeof *c->value),
-                    .difference = nevh__array(2 * r->n, sizeof *c->difference)};
-        bool made = c->rates && c->value && c->difference;
-        status = made ? plan(r, c, tolerance) : nevh__no_memory(&r->report);
+    if (!c || !allocate(r, c)) {
+        nevh__reference_series_free(c);
+        nevh__no_memory(&r->report);
+        return NULL;
     }
+    c->until = parted ? first->until : r->t1;
+    c->limit = parted ? nevh__reference_wanted / certain : apart;
+    c->foreseen = first ? (double)first->count : 0;
+    int status = plan(r, c, tolerance);
     if (!status)
         status = start(r, c);
     if (!status)
         status = run(r, c);
     if (!status)
         return c;
-    if (c && (c->fine.ended || c->coarse.ended))
+    if (c->fine.ended || c->coarse.ended)
         find_end(r, (double)c->fine.t);
     nevh__reference_series_free(c);
     return NULL;

@@ -290,6 +290,20 @@ static nevh__range elliptic(nevh__tape_operation f, nevh__range a) {
                 times((interval){-most, most}, slope_of(a)), a.broken);
 }
 
+static nevh__range special(nevh__tape_operation f, nevh__range a) {
+    switch (f) {
+    case NEVH__BESSEL_J0:
+    case NEVH__BESSEL_J1:
+        return join((interval){-1, 1},
+                    times((interval){-0.6, 0.6}, slope_of(a)), a.broken);
+    case NEVH__ELLIPTIC_K:
+    case NEVH__ELLIPTIC_E:
+        return elliptic(f, a);
+    default: /* nothing is known of it */
+        return join(all, all, a.broken);
+    }
+}
+
 static nevh__range hyperbolic(nevh__tape_operation f, nevh__range a) {
     interval x = value_of(a), y;
     switch (f) {
@@ -312,8 +326,29 @@ static nevh__range hyperbolic(nevh__tape_operation f, nevh__range a) {
     case NEVH__ATANH:
         x = within(x, -1, 1);
         return rising(f, x, inverse(minus((interval){1, 1}, square(x))), a);
-    default: /* nothing is known of it */
-        return join(all, all, a.broken);
+    default:
+        return special(f, a);
+    }
+}
+
+static nevh__range trigonometric(nevh__tape_operation f, nevh__range a) {
+    interval x = value_of(a), y;
+    switch (f) {
+    case NEVH__SIN:
+        return join(sine(x), times(cosine(x), slope_of(a)), a.broken);
+    case NEVH__COS:
+        y = sine(x);
+        return join(cosine(x), times((interval){-y.high, -y.low}, slope_of(a)),
+                    a.broken);
+    case NEVH__TAN:
+        return tangent(a);
+    case NEVH__ATAN:
+        return rising(f, x, inverse(plus_number(1, square(x))), a);
+    case NEVH__ASIN:
+    case NEVH__ACOS:
+        return arc(f, a);
+    default:
+        return hyperbolic(f, a);
     }
 }
 
@@ -329,19 +364,6 @@ static nevh__range of_one(nevh__tape_operation f, nevh__range a) {
     case NEVH__CUBE:
         y = square(x);
         return rising(f, x, (interval){3 * y.low, 3 * y.high}, a);
-    case NEVH__SIN:
-        return join(sine(x), times(cosine(x), slope_of(a)), a.broken);
-    case NEVH__COS:
-        y = sine(x);
-        return join(cosine(x), times((interval){-y.high, -y.low}, slope_of(a)),
-                    a.broken);
-    case NEVH__TAN:
-        return tangent(a);
-    case NEVH__ASIN:
-    case NEVH__ACOS:
-        return arc(f, a);
-    case NEVH__ATAN:
-        return rising(f, x, inverse(plus_number(1, square(x))), a);
     case NEVH__EXP:
         return exponential(a);
     case NEVH__LOG:
@@ -360,15 +382,8 @@ static nevh__range of_one(nevh__tape_operation f, nevh__range a) {
         return stair(nevh__sign(a.low), nevh__sign(a.high), a);
     case NEVH__FLOOR:
         return stair(floor(a.low), floor(a.high), a);
-    case NEVH__BESSEL_J0:
-    case NEVH__BESSEL_J1:
-        return join((interval){-1, 1},
-                    times((interval){-0.6, 0.6}, slope_of(a)), a.broken);
-    case NEVH__ELLIPTIC_K:
-    case NEVH__ELLIPTIC_E:
-        return elliptic(f, a);
     default:
-        return hyperbolic(f, a);
+        return trigonometric(f, a);
     }
 }
 

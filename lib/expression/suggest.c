@@ -137,15 +137,15 @@ bool nevh__refuse_name(const nevh__names *names, const nevh__bound *bound,
         return fail(node, error,
                     "%s is not defined; for Euler's number write %s", name,
                     "exp(1)");
-    const char *coordinate =
-        name[0] == 'p' || name[0] == 'v' ? coordinate_of(names, name) : NULL;
+    bool moves = name[0] == 'p' || name[0] == 'v';
+    const char *coordinate = moves ? coordinate_of(names, name) : NULL;
     if (coordinate)
         return fail(node, error,
                     name[0] == 'p' ? "the momentum of %s is p_%s"
                                    : "the velocity of %s is v_%s",
                     coordinate, coordinate);
     try_names(&s, names, bound);
-    if ((name[0] == 'p' || name[0] == 'v') && name[1] == '_' && name[2])
+    if (moves && name[1] == '_' && name[2])
         return refuse_prefixed(node, &s, error);
     if (strcmp(name, "\xCF\x80") == 0)
         strcpy(s.best, "pi");

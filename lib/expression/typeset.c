@@ -29,32 +29,36 @@ static void put_identifier(FILE *f, const char *name, size_t bytes) {
     fprintf(f, "<mi>%.*s</mi>", (int)bytes, name);
 }
 
+static void begin_index(FILE *f, const char *name, size_t base) {
+    fputs("<msub>", f);
+    put_identifier(f, name, base);
+    fputs("<mrow>", f);
+}
+
 /* p_x is p with the index x, and phi1 is phi with the index 1.  `index` is one
    more index, of an element; NULL: none. */
 static void put_name(FILE *f, const char *name, size_t bytes,
                      const nevh__syntax_node *index) {
     const char *bar = memchr(name, '_', bytes);
     size_t base = bar ? (size_t)(bar - name) : bytes;
-    bool momentum = base > 0 && base + 1 < bytes;
-    if (!momentum) {
-        base = bytes;
-        while (base > 1 && name[base - 1] >= '0' && name[base - 1] <= '9')
-            base--;
+    if (base > 0 && base + 1 < bytes) {
+        begin_index(f, name, base);
+        put_name(f, bar + 1, bytes - base - 1, index);
+        fputs("</mrow></msub>", f);
+        return;
     }
-    bool numbered = base < bytes, both = numbered && !momentum && index;
-    if (!numbered && !index) {
+    base = bytes;
+    while (base > 1 && name[base - 1] >= '0' && name[base - 1] <= '9')
+        base--;
+    if (base == bytes && !index) {
         put_identifier(f, name, bytes);
         return;
     }
-    fputs("<msub>", f);
-    put_identifier(f, name, base);
-    fputs("<mrow>", f);
-    if (momentum)
-        put_name(f, bar + 1, bytes - base - 1, index);
-    else if (numbered)
-        fprintf(f, "<mn>%.*s</mn>", (int)(bytes - base), name + base);
-    fputs(both ? "<mo>,</mo>" : "", f);
-    if (index && !momentum)
+    begin_index(f, name, base);
+    if (base < bytes)
+        fprintf(f, "<mn>%.*s</mn>%s", (int)(bytes - base), name + base,
+                index ? "<mo>,</mo>" : "");
+    if (index)
         put_node(f, index);
     fputs("</mrow></msub>", f);
 }

@@ -38,19 +38,19 @@ static int open_piece(nevh_sections *x, nevh__section_state *k) {
     int way = sign_of(b.value - a.value);
     bool take_a = on_a && k->came == -way;
     bool take_b = on_b && b.s == 1 && sign_of(k->slope_after * x->h) == way;
+    bool skip_a = on_a && !take_a, skip_b = on_b && !take_b;
+    double last;
     k->opened = true;
     k->way = way;
     k->left = 0;
     if (way == 0)
         return NEVH_OK;
-    bool skip_a = on_a && !take_a, skip_b = on_b && !take_b;
-    double last;
     if (way > 0) {
-        k->level = on_a && take_a ? from : from + 1;
+        k->level = take_a ? from : from + 1;
         last = skip_b ? to - 1 : to;
     } else {
         k->level = skip_a ? from - 1 : from;
-        last = on_b && take_b ? to : to + 1;
+        last = take_b ? to : to + 1;
     }
     k->left = fmax((last - k->level) * way + 1, 0);
     k->came = skip_b ? -way : 0;

@@ -55,6 +55,12 @@ static int check_indices(nevh_system *s, const nevh_term *term, char kind,
 }
 
 static int check_tables(nevh_system *s, const nevh_term *term) {
+    const size_t columns[] = {term->nq, term->np, term->nc};
+    for (int i = 0; i < 3; i++)
+        if (columns[i] && term->count > SIZE_MAX / sizeof(double) / columns[i])
+            return nevh__fail(&s->report, NEVH_EINVAL,
+                              "effect %s: %zu instances are too many",
+                              term->effect, term->count);
     bool *read = nevh__array(s->n, sizeof *read);
     if (!read)
         return nevh__no_memory(&s->report);
@@ -87,12 +93,6 @@ static int check_term(nevh_system *s, const nevh_term *term) {
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "effect %s: the term name \"%s\" is %s", term->effect,
                           term->name, term->name[0] ? "used twice" : "empty");
-    size_t most = term->nq > term->np ? term->nq : term->np;
-    most = term->nc > most ? term->nc : most;
-    if (most && term->count > SIZE_MAX / sizeof(double) / most)
-        return nevh__fail(&s->report, NEVH_EINVAL,
-                          "effect %s: %zu instances are too many", term->effect,
-                          term->count);
     return check_tables(s, term);
 }
 

@@ -196,6 +196,17 @@ static void hand_back(nevh__graph *g, int i, int of[]) {
     }
 }
 
+/* dp/dt = -dH/dq and dq/dt = dH/dp, where node i is a variable of the state. */
+static void set_slope(reader *r, int i, int derivative, int slope[]) {
+    size_t n = r->n, k = r->g->nodes[i].at;
+    if (r->g->nodes[i].kind != NEVH__GRAPH_VARIABLE)
+        return;
+    if (k < n)
+        slope[n + k] = nevh__graph_scale(r->g, -1, derivative);
+    else if (k < 2 * n)
+        slope[k - n] = derivative;
+}
+
 static int sweep(reader *r, const nevh__wide friction[], int slope[]) {
     nevh__graph *g = r->g;
     size_t n = r->n;
@@ -215,11 +226,7 @@ static int sweep(reader *r, const nevh__wide friction[], int slope[]) {
             continue;
         hand_back(g, i, of);
         tag(r, -1 - g->nodes[i].tag, true);
-        size_t k = g->nodes[i].at;
-        if (g->nodes[i].kind == NEVH__GRAPH_VARIABLE && k < n)
-            slope[n + k] = nevh__graph_scale(g, -1, of[i]);
-        if (g->nodes[i].kind == NEVH__GRAPH_VARIABLE && k >= n && k < 2 * n)
-            slope[k - n] = of[i];
+        set_slope(r, i, of[i], slope);
     }
     for (size_t k = 0; friction && k < n; k++)
         slope[n + k] = nevh__graph_add(

@@ -304,6 +304,18 @@ static int power_of_maximum(nevh__graph *g, int a, nevh__wide c) {
     return -1;
 }
 
+/* a^c as a power of something simpler, c no whole number; else -1. */
+static int broken_power(nevh__graph *g, int a, nevh__wide c) {
+    int simpler = even_power(g, a, c);
+    if (simpler < 0)
+        simpler = power_of_maximum(g, a, c);
+    double inner = (double)at(g, a)->number; /* a whole one: of either sign */
+    return simpler < 0 && !g->failed && at(g, a)->kind == NEVH__GRAPH_POWER &&
+                   inner != rint(inner)
+               ? nevh__graph_power(g, at(g, a)->a, at(g, a)->number * c)
+               : simpler;
+}
+
 int nevh__graph_power(nevh__graph *g, int a, nevh__wide c) {
     double near = (double)c;
     if (bad(g, a, a))
@@ -315,15 +327,10 @@ int nevh__graph_power(nevh__graph *g, int a, nevh__wide c) {
         return whole_power(g, a, (long)near);
     if (c == -1)
         return invert(g, a);
-    int simpler = whole ? -1 : even_power(g, a, c);
-    if (!whole && simpler < 0)
-        simpler = power_of_maximum(g, a, c);
-    if (simpler >= 0 || g->failed)
-        return simpler;
-    double inner = (double)at(g, a)->number; /* a whole one: of either sign */
-    if (at(g, a)->kind == NEVH__GRAPH_POWER && !whole && inner != rint(inner))
-        return nevh__graph_power(g, at(g, a)->a, at(g, a)->number * c);
-    return operation(g, NEVH__GRAPH_POWER, c, a, -1);
+    int simpler = whole ? -1 : broken_power(g, a, c);
+    return simpler >= 0 || g->failed
+               ? simpler
+               : operation(g, NEVH__GRAPH_POWER, c, a, -1);
 }
 
 /* Functions and their derivatives. */
