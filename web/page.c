@@ -218,6 +218,22 @@ PAGE_EXPORT(page_leave) void page_leave(page *g, size_t slot) {
         run_clear(&g->runs[slot]);
 }
 
+/* Puts the orbits of a run where they start. */
+static void place_orbits(const page *g, page_run *r, size_t k, double dq,
+                         double dp) {
+    double *z = r->state + PAGE_STATE;
+    size_t width = r->width;
+    for (size_t j = 0; j < 2 * g->n; j++)
+        for (size_t i = 0; i < width; i++)
+            z[j * width + i] = g->start[j];
+    for (size_t i = 0; width > 1 && i < width; i++) {
+        double angle = 2 * M_PI * (double)i / (double)width;
+        z[k * width + i] += dq * cos(angle);
+        z[(g->n + k) * width + i] += dp * sin(angle);
+    }
+    r->state[PAGE_T] = g->run->t_start;
+}
+
 /* A scheme from the start on; `width` orbits stand on a circle around it, in
    the plane of coordinate k, whose radii are dq and dp: 1 is the start itself.
  */
@@ -242,20 +258,12 @@ int page_race(page *g, size_t slot, const char *scheme, const char *gradient,
     r->state = take(PAGE_STATE + 2 * g->n * width, sizeof *r->state);
     if (!r->state)
         return page_fail(g, NEVH_ENOMEM, "out of memory");
-    double *z = r->state + PAGE_STATE;
-    for (size_t j = 0; j < 2 * g->n; j++)
-        for (size_t i = 0; i < width; i++)
-            z[j * width + i] = g->start[j];
-    for (size_t i = 0; width > 1 && i < width; i++) {
-        double angle = 2 * M_PI * (double)i / (double)width;
-        z[k * width + i] += dq * cos(angle);
-        z[(g->n + k) * width + i] += dp * sin(angle);
-    }
-    r->state[PAGE_T] = g->run->t_start;
+    place_orbits(g, r, k, dq, dp);
     r->status = run_plan(g, r, gradient, tolerance);
     if (r->status)
         return run_clear(r), g->status;
     observe(g, r);
+    double *z = r->state + PAGE_STATE;
     if (width == 1)
         watch(r, 0, r->state[PAGE_T], z, z + g->n);
     return g->status = NEVH_OK;

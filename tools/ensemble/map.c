@@ -166,31 +166,39 @@ static char *label_of(const map *m, size_t column) {
     return label;
 }
 
-/* Two directions whose values are combined, each pair once. */
+/* Two directions whose values are combined, each pair once, or one alone, whose
+   number is taken twice. */
+static bool choose_pair(const map *m, const direction *all, size_t pair[2]) {
+    for (size_t a = 0; a < m->varied; a++)
+        for (size_t b = a + 1; b < m->varied; b++)
+            if (all[a].count > 1 && all[b].count > 1 &&
+                all[a].count * all[b].count == m->members) {
+                pair[0] = a;
+                pair[1] = b;
+                return true;
+            }
+    for (size_t a = 0; a < m->varied; a++)
+        if (all[a].count == m->members && m->members > 1) {
+            pair[0] = pair[1] = a;
+            return true;
+        }
+    return false;
+}
+
 static bool find_directions(const map *m, direction found[2], size_t *count) {
-    *count = 0;
+    size_t pair[2];
     direction *all = tool_allocate(m->varied, sizeof *all);
     for (size_t k = 0; k < m->varied; k++)
         all[k] = direction_of(m, k);
-    for (size_t a = 0; a < m->varied && !*count; a++)
-        for (size_t b = a + 1; b < m->varied && !*count; b++)
-            if (all[a].count > 1 && all[b].count > 1 &&
-                all[a].count * all[b].count == m->members) {
-                found[0] = all[a];
-                found[1] = all[b];
-                *count = 2;
-            }
-    for (size_t a = 0; a < m->varied && !*count; a++)
-        if (all[a].count == m->members && m->members > 1) {
-            found[0] = all[a];
-            *count = 1;
-        }
+    bool any = choose_pair(m, all, pair);
+    *count = !any ? 0 : pair[0] == pair[1] ? 1 : 2;
     for (size_t k = 0; k < m->varied; k++)
-        if (!*count ||
-            (k != found[0].column && (*count == 1 || k != found[1].column)))
+        if (any && (k == pair[0] || k == pair[1]))
+            found[k == pair[0] ? 0 : 1] = all[k];
+        else
             free(all[k].value);
     free(all);
-    return *count > 0;
+    return any;
 }
 
 static int draw_measured(map *m, plot *to, const char *x, const char *y,

@@ -241,27 +241,30 @@ static int run(sweep_job *j) {
 
 /* Checks options that depend on each other. */
 static int check_options(const options *o) {
-    if (option_given(o, "format") && o->format != FORMAT_CSV)
-        return tool_refuse(
-            "nevh sweep writes CSV, or with -o FILE.npy an array "
-            "of NumPy");
-    if (o->plot.script && !o->picture)
-        return tool_refuse("--keep-plot-script is of --picture: give both");
-    if (o->resume && o->file)
-        return tool_refuse("--resume names the file: leave -o out");
-    if (o->resume && o->tasks)
-        return tool_refuse("--resume names the file of the part: leave --task "
-                           "out");
-    if (o->join && (o->tasks || !o->file))
-        return tool_refuse(
-            "--join makes -o FILE.npy of its parts: leave --task "
-            "and --resume out");
-    if (o->retry && !o->resume)
-        return tool_refuse("--retry repeats failed members: give "
-                           "--resume FILE.npy");
-    if ((o->resume || o->join || o->tasks || o->stop_after > 0) && !is_array(o))
-        return tool_refuse("--resume, --stop-after, --task and --join take a "
-                           "FILE.npy: CSV is written in one go");
+    bool resumes = o->resume, parts = o->tasks, file = o->file;
+    bool in_pieces = resumes || o->join || parts || o->stop_after > 0;
+    const struct {
+        bool clash;
+        const char *words;
+    } rules[] = {
+        {option_given(o, "format") && o->format != FORMAT_CSV,
+         "nevh sweep writes CSV, or with -o FILE.npy an array of NumPy"},
+        {o->plot.script && !o->picture,
+         "--keep-plot-script is of --picture: give both"},
+        {resumes && file, "--resume names the file: leave -o out"},
+        {resumes && parts,
+         "--resume names the file of the part: leave --task out"},
+        {o->join && (parts || !file), "--join makes -o FILE.npy of its parts: "
+                                      "leave --task and --resume out"},
+        {o->retry && !resumes,
+         "--retry repeats failed members: give --resume FILE.npy"},
+        {in_pieces && !is_array(o), "--resume, --stop-after, --task and --join "
+                                    "take a FILE.npy: CSV is written in one "
+                                    "go"},
+    };
+    for (size_t i = 0; i < sizeof rules / sizeof *rules; i++)
+        if (rules[i].clash)
+            return tool_refuse("%s", rules[i].words);
     return TOOL_OK;
 }
 

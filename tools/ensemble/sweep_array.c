@@ -249,34 +249,40 @@ static int draw_array(sweep_job *j, int status) {
     return map_draw(j->map, j->integrator) ? TOOL_USAGE : status;
 }
 
-int sweep_array(sweep_job *j) {
+/* The members of a part, or those that a file lacks. */
+static int run_members(sweep_job *j) {
     const options *o = j->options;
-    char *settings = describe(j), *story = describe_file(j), *name = NULL;
+    store *s = &j->store;
+    int status = TOOL_OK;
+    if (o->tasks)
+        take_part(j, o->task, o->tasks, &s->first, &s->count);
+    if (o->resume)
+        status = ranks_agree(&j->ranks,
+                             store_range(o->resume, &s->first, &s->count));
+    if (status)
+        return status;
+    j->count = s->count;
+    char *name =
+        output_part(o->resume ? o->resume : o->file, o->task, o->tasks);
+    status = ranks_open(&j->ranks, s, name, o->resume, j->threads);
+    if (!status)
+        status = run_array(j);
+    free(name);
+    return status;
+}
+
+int sweep_array(sweep_job *j) {
+    char *settings = describe(j), *story = describe_file(j);
     j->store = (store){.file = -1,
                        .columns = &j->columns,
                        .settings = settings,
                        .story = story,
                        .count = j->count};
-    int status = TOOL_OK;
-    if (o->tasks)
-        take_part(j, o->task, o->tasks, &j->store.first, &j->store.count);
-    if (o->resume)
-        status = ranks_agree(&j->ranks, store_range(o->resume, &j->store.first,
-                                                    &j->store.count));
-    j->count = o->join ? j->count : j->store.count;
-    if (!status && o->join) {
-        status = join(j);
-    } else if (!status) {
-        name = output_part(o->resume ? o->resume : o->file, o->task, o->tasks);
-        status = ranks_open(&j->ranks, &j->store, name, o->resume, j->threads);
-        if (!status)
-            status = run_array(j);
-    }
+    int status = j->options->join ? join(j) : run_members(j);
     bool ends = status == TOOL_STOPPED && interrupted;
     if (j->map && !j->ranks.rank && status != TOOL_USAGE && !ends)
         status = draw_array(j, status);
     store_close(&j->store);
-    free(name);
     free(settings);
     free(story);
     if (ends && j->ranks.count == 1)

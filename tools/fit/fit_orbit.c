@@ -70,30 +70,35 @@ static double fastest_of(const fitting *f) {
                                                                  : INFINITY;
 }
 
+/* One more name of --vary. */
+static int add_varied(fitting *f, const char *name, const options *o) {
+    varied *v = &f->item[f->count++];
+    v->name = text_print("%s", name);
+    for (size_t k = 0; k + 1 < f->count; k++)
+        if (strcmp(name, f->item[k].name) == 0)
+            return tool_refuse("--vary: %s stands there twice", name);
+    if (strchr(name, '='))
+        return tool_refuse("--vary of nevh fit takes names alone: what "
+                           "%s begins with is given by --set or --start",
+                           name);
+    if (first_value(f, v, o))
+        return TOOL_USAGE;
+    v->value = v->first;
+    v->scale = v->first != 0 ? fabs(v->first) : 1;
+    return assign(f, v, v->first)
+               ? tool_refuse("--vary %s: %s", name,
+                             nevh_scene_message(f->plan->scene))
+               : TOOL_OK;
+}
+
 int fit_begin(fitting *f, const options *o) {
     list names = {0};
     int status = TOOL_OK;
     for (size_t i = 0; i < o->vary.count; i++)
         list_split(&names, o->vary.item[i]);
     f->item = tool_allocate(names.count, sizeof *f->item);
-    for (size_t i = 0; !status && i < names.count; i++) {
-        varied *v = &f->item[f->count++];
-        v->name = text_print("%s", names.item[i]);
-        for (size_t k = 0; !status && k < i; k++)
-            if (strcmp(v->name, f->item[k].name) == 0)
-                status = tool_refuse("--vary: %s stands there twice", v->name);
-        if (!status && strchr(v->name, '='))
-            status = tool_refuse("--vary of nevh fit takes names alone: what "
-                                 "%s begins with is given by --set or --start",
-                                 v->name);
-        if (!status)
-            status = first_value(f, v, o);
-        if (!status && assign(f, v, v->first))
-            status = tool_refuse("--vary %s: %s", v->name,
-                                 nevh_scene_message(f->plan->scene));
-        v->value = v->first;
-        v->scale = v->first != 0 ? fabs(v->first) : 1;
-    }
+    for (size_t i = 0; !status && i < names.count; i++)
+        status = add_varied(f, names.item[i], o);
     list_free(&names);
     f->held = f->count;
     if (!status && renew(f->plan))

@@ -206,13 +206,14 @@ static void effect_words(const char *effect, const both *b, const char *names,
 }
 
 /* All digits, but for what is to be read. */
-static void put(const page *result, bool known, const char *format, double x) {
-    if (known && isfinite(x) && format)
-        table_shown(result->table, format, x);
-    else if (known && isfinite(x))
-        table_number(result->table, x);
+static void put(const options *o, table *t, bool known, const char *format,
+                double x) {
+    if (!known || !isfinite(x))
+        table_text(t, NULL);
+    else if (o->format == FORMAT_TABLE)
+        table_shown(t, format, x);
     else
-        table_text(result->table, NULL);
+        table_number(t, x);
 }
 
 /* Returns whether the orbits were as far apart as they can be. */
@@ -232,15 +233,12 @@ static bool put_row(const options *o, const char *effect, bool on,
     table_text(t, on ? "on" : "off");
     table_text(t, b->integrator);
     bool compared = b->ran && !(shown && is_essential(b));
-    put(result, compared, shown ? "%.1e" : NULL, d.at_end);
-    put(result, compared, shown ? "%.1e" : NULL, d.largest);
-    put(result, compared, shown ? "%.4g" : NULL, d.since);
-    put(result, compared, shown ? "%+.1e" : NULL,
-        (c->energy - a->energy) / scale);
-    put(result, b->ran && a->work > 0, shown ? "%.2f" : NULL,
-        c->work / a->work);
-    put(result, b->ran && a->seconds > 0, shown ? "%.2f" : NULL,
-        c->seconds / a->seconds);
+    put(o, t, compared, "%.1e", d.at_end);
+    put(o, t, compared, "%.1e", d.largest);
+    put(o, t, compared, "%.4g", d.since);
+    put(o, t, compared, "%+.1e", (c->energy - a->energy) / scale);
+    put(o, t, b->ran && a->work > 0, "%.2f", c->work / a->work);
+    put(o, t, b->ran && a->seconds > 0, "%.2f", c->seconds / a->seconds);
     if (shown)
         table_number(t, (double)count);
     else

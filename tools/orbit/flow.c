@@ -287,36 +287,45 @@ static void change_words(const flow_row *r, double ratio, double t, list *to) {
                    r->integrator, r->dt, way, ratio, t);
 }
 
+/* The largest |ratio - 1| of a row's areas; NAN: none is known.  `last`: the last
+   area that is told. */
+static double largest_change(const flow_job *j, const flow_row *r,
+                             nevh_loop_area *last) {
+    double first = nevh_loop_result(r->loop, 0).area, largest = NAN;
+    *last = (nevh_loop_area){.area = NAN};
+    for (size_t i = 1; i < j->times; i++) {
+        nevh_loop_area at = nevh_loop_result(r->loop, i);
+        if (isnan(at.area))
+            continue;
+        if (flow_resolved(at))
+            largest = fmax(largest, fabs(at.area / first - 1));
+        if (at.inside || flow_resolved(at))
+            *last = at;
+    }
+    return largest;
+}
+
 /* The largest |ratio - 1| of symplectic rows, and what others do. */
 static void words(const flow_job *j, list *to) {
-    double worst = 0;
-    bool any = false;
+    double worst = NAN;
     for (size_t k = 0; k < j->rows; k++) {
         const flow_row *r = &j->row[k];
         double first = nevh_loop_result(r->loop, 0).area;
-        nevh_loop_area last = {.area = NAN};
-        for (size_t i = 1; i < j->times; i++) {
-            nevh_loop_area at = nevh_loop_result(r->loop, i);
-            if (!isnan(at.area) && (at.inside || flow_resolved(at)))
-                last = at;
-            if (!isnan(at.area) && flow_resolved(at) &&
-                strcmp(symplectic(j, r), "yes") == 0) {
-                worst = fmax(worst, fabs(at.area / first - 1));
-                any = true;
-            }
-        }
-        if (!isnan(last.area) && strcmp(symplectic(j, r), "yes") != 0 &&
-            !j->plan.friction)
+        nevh_loop_area last;
+        double change = largest_change(j, r, &last);
+        if (strcmp(symplectic(j, r), "yes") == 0)
+            worst = fmax(worst, change);
+        else if (!isnan(last.area) && !j->plan.friction)
             change_words(r, last.area / first, last.t, to);
         if (r->status)
             list_print(to, "%s %s", r->integrator, r->status);
     }
-    if (any && !j->plan.friction)
+    if (!isnan(worst) && !j->plan.friction)
         list_print(to,
                    "Symplectic integrators keep the area: ratios are 1 "
                    "within %.1e.",
                    worst);
-    else if (any)
+    else if (!isnan(worst))
         list_add(to, "With friction the area shrinks, with symplectic "
                      "integrators by exp(-gamma t) where all rates are equal.");
 }

@@ -129,16 +129,18 @@ void plot_same_ranges(plot *p) {
 /* Finds the look of a series of the same name; else the first free one: in the
    panel for those without a name, in the plot for the others. */
 static size_t find_look(const plot *p, const char *name) {
+    static const bool grey[PLOT_GUIDE + 1] = {
+        [PLOT_BEHIND] = true, [PLOT_REFERENCE] = true, [PLOT_RODS] = true,
+        [PLOT_GUIDE] = true,  [PLOT_LEVEL] = true,     [PLOT_SEPARATRIX] = true,
+        [PLOT_CENTRE] = true, [PLOT_SADDLE] = true,
+    };
     size_t look = 0;
     for (size_t i = 0; i < p->count; i++) {
         const series *s = &p->series[i];
         if (name && s->name && strcmp(name, s->name) == 0)
             return s->look;
-        bool grey = s->form == PLOT_BEHIND || s->form == PLOT_REFERENCE ||
-                    s->form == PLOT_RODS || s->form == PLOT_GUIDE ||
-                    s->form == PLOT_LEVEL || s->form == PLOT_SEPARATRIX ||
-                    s->form == PLOT_CENTRE || s->form == PLOT_SADDLE;
-        if (!grey && (name || s->panel == p->panels - 1) && look <= s->look)
+        if (!grey[s->form] && (name || s->panel == p->panels - 1) &&
+            look <= s->look)
             look = s->look + 1;
     }
     return look;
