@@ -142,7 +142,7 @@ static int family_of(const nevh_integrator *scheme) {
 
 static const char *needs(const nevh_integrator *scheme) {
     unsigned needs = nevh_integrator_needs(scheme);
-    return needs & NEVH_PARTS ? "H = A + V(q), A a quadratic form"
+    return needs & NEVH_PARTS ? "H = A + V(q), A quadratic or about centres"
            : needs & NEVH_QUADRATIC_KINETIC
                ? "H = T(p) + V(q), T quadratic in p"
            : needs & NEVH_SEPARABLE                 ? "H = T(p) + V(q)"

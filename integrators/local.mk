@@ -13,6 +13,8 @@ libnevh_core_la_SOURCES += \
 	integrators/kernels/splitting_step.h \
 	integrators/kernels/splitting_expand.c \
 	integrators/kernels/splitting_kernel.c \
+	integrators/kernels/kepler_flow_private.h \
+	integrators/kernels/kepler_flow.c \
 	integrators/kernels/form_flow_private.h \
 	integrators/kernels/form_flow.c \
 	integrators/kernels/parts_kernel.c \

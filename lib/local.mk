@@ -19,6 +19,7 @@ libnevh_core_la_SOURCES = \
 	lib/system/masses.c \
 	lib/system/parts_private.h \
 	lib/system/parts.c \
+	lib/system/centres.c \
 	lib/system/kinetic.c \
 	lib/system/pairs.c \
 	lib/system/pairs_private.h \

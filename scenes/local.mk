@@ -30,6 +30,7 @@ dist_scenes_DATA = \
 	scenes/pendulum-separatrix.nevh \
 	scenes/pendulum-small.nevh \
 	scenes/penning-trap.nevh \
+	scenes/kirkwood-gap.nevh \
 	scenes/pendulum.nevh \
 	scenes/sun-earth-moon.nevh
 

@@ -91,8 +91,8 @@ enum nevh_trait {
     NEVH_AUTONOMOUS = 2,        /* H does not read t */
     NEVH_QUADRATIC_KINETIC = 4, /* T is quadratic in p; no declaration says so:
                                    where a scheme needs it, H is probed */
-    NEVH_PARTS = 8, /* a quadratic form with constant coefficients that has all
-                       momenta, and V(t, q); terms are probed, too */
+    NEVH_PARTS = 8, /* forms of degree 2 with constant coefficients that have
+                       all momenta, -k/|q| and V(t, q); terms are probed, too */
 };
 
 typedef struct nevh_system nevh_system;
@@ -180,7 +180,8 @@ NEVH_API bool nevh_system_friction(const nevh_system *, double rates[]);
 NEVH_API unsigned nevh_system_traits(const nevh_system *);
 
 /* The part of H = A + B that an effect belongs to, for schemes by parts: A, fast, is
-   a quadratic form with constant coefficients; B = V(t, q) is slow. */
+   quadratic forms with constant coefficients and, of bodies whose momenta have but
+   p^2/2m, -k/|q| of two or three coordinates; B = V(t, q) is slow. */
 typedef enum {
     NEVH_BY_TERM, /* terms that are such forms are in A, others in B */
     NEVH_FAST,    /* all its terms are in A */

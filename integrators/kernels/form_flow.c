@@ -1,4 +1,4 @@
-/* nevh: the flow of a quadratic form.
+/* nevh: the flow of a quadratic form, and about centres.
 
    dz/dt = J (K z + g) has the flow z + D(t) (z, 1) with D(t) = exp(t a) - 1, where
    a is the matrix J (K, g) with a row of zeros for the 1.  D is a Taylor series
@@ -11,9 +11,11 @@
 
    Variables of a block stand as q, p of one coordinate after the other, so that
    chains have banded matrices: elements below the last digits are left out.
+   A block with -k/|q| has no matrix: kepler_flow.c moves it.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "form_flow_private.h"
 #include "gradient/field_private.h"
+#include "kepler_flow_private.h"
 #include "system/parts_private.h"
 #include <float.h>
 #include <math.h>
@@ -29,6 +31,7 @@ typedef struct {
     long double *a;      /* m x (m + 1), by rows: dz/dt = a (z, 1) */
     int *units;          /* m: powers of two */
     size_t at;           /* of its elements in a set */
+    double k;            /* of -k/|q| */
 } block;
 
 /* Element by element in columns: (row, column) of D at column * m + row. */
@@ -72,11 +75,18 @@ void nevh__form_flow_free(nevh__form_flow *f) {
    coordinates first; column 2n is g. */
 typedef void (*entry_fn)(void *, size_t row, size_t column, double value);
 
+/* Entries of -k/|q| have columns above 2n: k is at its first coordinate. */
 static void visit_instance(const nevh_field *f, const nevh__planned *term,
                            size_t instance, double *room, entry_fn visit,
                            void *data) {
-    size_t nv = term->nv;
-    double *form = room + nevh__form_room(&term->term->decl);
+    size_t nv = term->nv, first = nevh__index(term, instance, 0);
+    double k, *form = room + nevh__form_room(&term->term->decl);
+    if (nevh__centre_find(term->term, instance, &k, room)) {
+        for (size_t i = 0; i < nv; i++)
+            visit(data, nevh__index(term, instance, i), 2 * f->n + 1 + first,
+                  i ? 0 : k);
+        return;
+    }
     nevh__form_find(term->term, instance, form, room);
     for (size_t i = 0; i < nv; i++)
         for (size_t j = 0; j <= nv; j++) {
@@ -116,9 +126,11 @@ static size_t root(const forest *x, size_t i) {
 
 static void connect(void *data, size_t row, size_t column, double value) {
     forest *x = data;
-    if (value == 0 || column == 2 * x->n)
+    bool central = column > 2 * x->n;
+    if (!central && (value == 0 || column == 2 * x->n))
         return;
-    size_t i = root(x, row % x->n), j = root(x, column % x->n);
+    size_t i = root(x, row % x->n);
+    size_t j = root(x, (central ? column - 1 : column) % x->n);
     x->up[i > j ? i : j] = i > j ? j : i;
 }
 
@@ -132,6 +144,10 @@ static void put_entry(void *data, size_t row, size_t column, double value) {
     const map *x = data;
     size_t n = x->flow->n, k = row % n;
     block *b = &x->flow->blocks[x->block[k]];
+    if (column > 2 * n) {
+        b->k += value;
+        return;
+    }
     size_t m = 2 * b->count, to = 2 * x->place[k] + (row < n ? 1 : 0);
     size_t from =
         column == 2 * n ? m : 2 * x->place[column % n] + (column < n ? 0 : 1);
@@ -350,8 +366,9 @@ void nevh__form_flow_set(nevh__form_flow *f, double h) {
         for (size_t i = 0, column = t * f->columns; i < f->n_blocks; i++) {
             const block *b = &f->blocks[i];
             size_t at = t * f->size + b->at;
-            store(b, exponential(b, f->times[t] * h, f->room), x->high + at,
-                  x->low + at, x->first + column, x->last + column);
+            if (b->k == 0)
+                store(b, exponential(b, f->times[t] * h, f->room), x->high + at,
+                      x->low + at, x->first + column, x->last + column);
             column += 2 * b->count + 1;
         }
 }
@@ -380,6 +397,21 @@ NEVH__INLINE void add_block(const block *b, const double *d_high,
     }
 }
 
+static void add_centre(const block *b, double t, size_t width, const double q[],
+                       const double p[], double dq[], double dp[]) {
+    long double r[NEVH__SPACE] = {0}, v[NEVH__SPACE] = {0}, w = b->a[1];
+    for (size_t k = 0; k < b->count; k++) {
+        r[k] = q[b->index[k] * width];
+        v[k] = p[b->index[k] * width] * w;
+    }
+    nevh__kepler_flow((double)(b->k * w), t, r, v);
+    for (size_t k = 0; k < b->count; k++) {
+        size_t at = b->index[k] * width;
+        dq[at] += (double)(r[k] - q[at]);
+        dp[at] += (double)(v[k] / w - p[at]);
+    }
+}
+
 NEVH_SIMD static void add_blocks(const nevh__form_flow *f, size_t which,
                                  size_t width, const double q[],
                                  const double p[], double dq[], double dp[]) {
@@ -389,9 +421,13 @@ NEVH_SIMD static void add_blocks(const nevh__form_flow *f, size_t which,
         size_t column = which * f->columns;
         for (const block *b = f->blocks; b < f->blocks + f->n_blocks; b++) {
             size_t at = which * f->size + b->at;
-            add_block(b, x->high + at, x->low + at, x->first + column,
-                      x->last + column, width, q + lane, p + lane, dq + lane,
-                      dp + lane, high, low);
+            if (b->k != 0)
+                add_centre(b, f->times[which] * x->h, width, q + lane, p + lane,
+                           dq + lane, dp + lane);
+            else
+                add_block(b, x->high + at, x->low + at, x->first + column,
+                          x->last + column, width, q + lane, p + lane,
+                          dq + lane, dp + lane, high, low);
             column += 2 * b->count + 1;
         }
     }

@@ -107,16 +107,17 @@ static int refuse_parts(nevh_stepper *s, const nevh__parts_fault *fault) {
             fit, sizeof fit);
     if (!fault->term)
         return nevh__fail(&s->report, NEVH_ESTRUCT,
-                          "%s moves a quadratic form with constant "
-                          "coefficients exactly, but no term is one; schemes "
-                          "that fit: %s",
+                          "%s moves quadratic forms with constant "
+                          "coefficients and -k/|q| exactly, but no term is "
+                          "one; schemes that fit: %s",
                           scheme->name, fit);
-    return nevh__fail(&s->report, NEVH_ESTRUCT,
-                      "%s needs H = A + V(q), where A is a quadratic form with "
-                      "constant coefficients, but term \"%s\" of effect "
-                      "\"%s\" %s; schemes that fit: %s",
-                      scheme->name, fault->term->name, fault->term->effect,
-                      fault->reason, fit);
+    return nevh__fail(
+        &s->report, NEVH_ESTRUCT,
+        "%s needs H = A + V(q), where A has quadratic forms with "
+        "constant coefficients and -k/|q|, but term \"%s\" of effect "
+        "\"%s\" %s; schemes that fit: %s",
+        scheme->name, fault->term->name, fault->term->effect, fault->reason,
+        fit);
 }
 
 int nevh__choose_parts(nevh_stepper *s, bool **apart) {

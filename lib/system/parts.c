@@ -1,9 +1,10 @@
-/* nevh: which terms are quadratic forms with constant coefficients?
+/* nevh: which terms are quadratic forms with constant coefficients, and which are
+   -k/|q|?
 
-   Asked of the derivatives that a term brings, or of differences of its values,
-   which are exact for such a form.  Those at unit vectors give the coefficients;
-   at other states, near and far, the derivatives have to be the linear functions
-   that follow.
+   Forms are asked of the derivatives that a term brings, or of differences of its
+   values, which are exact for such a form.  Those at unit vectors give the
+   coefficients; at other states, near and far, the derivatives have to be the linear
+   functions that follow.  Values of -k/|q| are as they should be at other states.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "system/parts_private.h"
 #include <float.h>
@@ -135,16 +136,56 @@ bool nevh__form_find(const nevh__term_entry *term, size_t instance,
     return true;
 }
 
-static int is_form(const nevh__term_entry *term, bool *is) {
+/* Values at eight states and their distances from 0. */
+static void take_values(const trial *x, double distance[]) {
+    nevh__term_values(x->term, false, NEVH__LANES, NEVH__LANES, x->t, x->z,
+                      x->z + NEVH__LANES * x->term->decl.nq, x->c, x->h,
+                      x->one);
+    for (size_t lane = 0; lane < NEVH__LANES; lane++) {
+        distance[lane] = 0;
+        for (size_t k = 0; k < x->nv; k++)
+            distance[lane] =
+                hypot(distance[lane], x->z[k * NEVH__LANES + lane]);
+    }
+}
+
+bool nevh__centre_find(const nevh__term_entry *term, size_t instance, double *k,
+                       double room[]) {
+    static const int powers[] = {-200, -60, -20, 0, 20, 60, 200};
+    double distance[NEVH__LANES];
+    uint64_t random = 1;
+    const nevh_term *decl = &term->decl;
+    if (decl->nq < 2 || decl->nq > NEVH__SPACE || decl->np)
+        return false;
+    trial x = lay_out(term, instance, room);
+    x.z[0] = 1;
+    take_values(&x, distance);
+    *k = -x.h[0];
+    for (size_t i = 0; i < sizeof powers / sizeof *powers; i++) {
+        for (size_t j = 0; j < NEVH__LANES * x.nv; j++)
+            x.z[j] = ldexp(nevh__random(&random), powers[i]);
+        take_values(&x, distance);
+        for (size_t lane = 0; lane < NEVH__LANES; lane++)
+            if (!(fabs(x.h[lane] * distance[lane] + *k) <=
+                  roundings * DBL_EPSILON * fabs(*k)))
+                return false;
+    }
+    return *k != 0 && isfinite(*k);
+}
+
+/* form, centre: out, true if all instances are forms, or -k/|q|. */
+static int classify(const nevh__term_entry *term, bool *form, bool *centre) {
     const nevh_term *decl = &term->decl;
     size_t nv = decl->nq + decl->np;
-    double *room =
-        nevh__array(nevh__form_room(decl) + nv * (nv + 1), sizeof *room);
+    double k, *room = nevh__array(nevh__form_room(decl) + nv * (nv + 1),
+                                  sizeof *room);
     if (!room)
         return NEVH_ENOMEM;
-    *is = true;
-    for (size_t i = 0; *is && i < decl->count; i++)
-        *is = nevh__form_find(term, i, room, room + nv * (nv + 1));
+    *form = *centre = true;
+    for (size_t i = 0; *form && i < decl->count; i++)
+        *form = nevh__form_find(term, i, room, room + nv * (nv + 1));
+    for (size_t i = 0; *centre && i < decl->count; i++)
+        *centre = nevh__centre_find(term, i, &k, room);
     free(room);
     return NEVH_OK;
 }
@@ -152,37 +193,54 @@ static int is_form(const nevh__term_entry *term, bool *is) {
 enum { MOST_READ = 64 }; /* by an instance of a form */
 
 static int choose(const nevh_system *s, const nevh__term_entry *term,
-                  bool *fast, const char **reason) {
+                  nevh__part_role *part) {
+    const nevh_term *decl = &term->decl;
+    size_t nv = decl->nq + decl->np;
+    bool form = false, centre = false;
+    *part = NEVH__KICK;
+    if (!nevh__term_on(s, term) ||
+        s->effects[term->effect].speed == NEVH_SLOW || decl->time || !nv ||
+        nv > MOST_READ)
+        return NEVH_OK;
+    int status = classify(term, &form, &centre);
+    *part = form ? NEVH__FORM : centre ? NEVH__CENTRE : NEVH__KICK;
+    return status;
+}
+
+/* NULL: none. */
+static const char *reason_of(const nevh_system *s, const nevh__term_entry *term,
+                             nevh__part_role part) {
     const nevh_term *decl = &term->decl;
     nevh_speed speed = s->effects[term->effect].speed;
-    size_t nv = decl->nq + decl->np;
-    *fast = speed != NEVH_SLOW && !decl->time && nv && nv <= MOST_READ;
-    if (*fast && is_form(term, fast))
-        return NEVH_ENOMEM;
-    *reason = *fast || !nv         ? NULL
-              : speed == NEVH_FAST ? "is to be fast and is no such form"
-              : !decl->np          ? NULL
-              : speed == NEVH_SLOW ? "is to be slow and reads momenta"
-              : decl->time         ? "reads momenta and the time"
-                                   : "reads momenta and is no such form";
-    return NEVH_OK;
+    return part != NEVH__KICK || !(decl->nq + decl->np) ? NULL
+           : speed == NEVH_FAST ? "is to be fast and is no such form"
+           : !decl->np          ? NULL
+           : speed == NEVH_SLOW ? "is to be slow and reads momenta"
+           : decl->time         ? "reads momenta and the time"
+                                : "reads momenta and is no such form";
 }
 
 int nevh__parts_find(const nevh_system *s, bool fast[],
                      nevh__parts_fault *fault) {
+    nevh__part_role *part = nevh__array(s->n_terms, sizeof *part);
+    int status = part ? NEVH_OK : NEVH_ENOMEM;
     bool any = false;
     *fault = (nevh__parts_fault){NULL, NULL};
-    for (size_t i = 0; i < s->n_terms; i++) {
-        const char *reason = NULL;
-        fast[i] = false;
-        if (nevh__term_on(s, s->terms[i]) &&
-            choose(s, s->terms[i], &fast[i], &reason))
-            return NEVH_ENOMEM;
+    for (size_t i = 0; !status && i < s->n_terms; i++)
+        status = choose(s, s->terms[i], &part[i]);
+    if (!status)
+        status = nevh__centres_choose(s, part);
+    for (size_t i = 0; !status && i < s->n_terms; i++) {
+        const nevh__term_entry *term = s->terms[i];
+        const char *reason =
+            nevh__term_on(s, term) ? reason_of(s, term, part[i]) : NULL;
         if (reason && !fault->term)
-            *fault = (nevh__parts_fault){&s->terms[i]->decl, reason};
+            *fault = (nevh__parts_fault){&term->decl, reason};
+        fast[i] = part[i] != NEVH__KICK;
         any |= fast[i];
     }
-    return any && !fault->term ? NEVH_OK : NEVH_ESTRUCT;
+    free(part);
+    return status ? status : any && !fault->term ? NEVH_OK : NEVH_ESTRUCT;
 }
 
 int nevh_system_parts(const nevh_system *s, const char *effect, size_t *fast,

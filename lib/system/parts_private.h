@@ -1,7 +1,8 @@
 /* nevh: a Hamiltonian in two parts, A + B.
 
-   A is a quadratic form of coordinates and momenta with constant coefficients,
-   lower powers included, whose flow is known; B = V(t, q) is the rest.
+   A has the terms whose flow is known: quadratic forms of coordinates and momenta
+   with constant coefficients, lower powers included, and -k/|q| of two or three
+   coordinates whose momenta have p^2/2m alone.  B = V(t, q) is the rest.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef NEVH_PARTS_PRIVATE_H
 #define NEVH_PARTS_PRIVATE_H
@@ -14,7 +15,9 @@ typedef struct {
     const char *reason;    /* "reads momenta and is no quadratic form ..." */
 } nevh__parts_fault;
 
-/* Chooses the terms of A: those that are such forms.
+typedef enum { NEVH__KICK, NEVH__FORM, NEVH__CENTRE } nevh__part_role;
+
+/* Chooses the terms of A.
    fast     out, one for each term of the system
    returns  NEVH_OK; NEVH_ESTRUCT where what reads momenta is no such form, or
             nothing is; NEVH_ENOMEM
@@ -28,5 +31,14 @@ int nevh__parts_find(const nevh_system *, bool fast[], nevh__parts_fault *);
 size_t nevh__form_room(const nevh_term *);
 bool nevh__form_find(const nevh__term_entry *, size_t instance, double form[],
                      double room[]);
+/* The k of an instance that is -k/|q| of all its coordinates; false: it is not. */
+enum { NEVH__SPACE = 3 }; /* the most of these */
+bool nevh__centre_find(const nevh__term_entry *, size_t instance, double *k,
+                       double room[]);
+/* Leaves to B the centres whose coordinates are moved otherwise, too, and forms of q
+   beside the others.
+   part     in and out, one for each term
+   returns  NEVH_OK; NEVH_ENOMEM */
+int nevh__centres_choose(const nevh_system *, nevh__part_role part[]);
 
 #endif
