@@ -17,7 +17,7 @@ enum {
     STATES_NEAR = 7
 };
 
-static int check(nevh_chaos *c, const nevh_chaos_options *o) {
+static int chaos_check(nevh_chaos *c, const nevh_chaos_options *o) {
     size_t most = 2 * c->n;
     if (!o->options || !o->options->q || !o->options->p)
         return nevh__fail(&c->report, NEVH_EINVAL,
@@ -118,7 +118,7 @@ static int plan_period(nevh_chaos *c) {
 }
 
 /* Gradients that terms bring, where they do. */
-static int plan_field(nevh_chaos *c) {
+static int chaos_plan_field(nevh_chaos *c) {
     nevh_options o = c->options;
     for (int i = 0; i < 2; i++) {
         o.gradient = i ? c->options.gradient : nevh_exact;
@@ -237,7 +237,7 @@ static void lay_out_start(nevh__arena *a, const nevh_chaos *c,
     s->course = nevh__arena_take(a, 2 * c->n, sizeof *s->course);
 }
 
-static void lay_out(nevh__arena *a, void *chaos) {
+static void chaos_lay_out(nevh__arena *a, void *chaos) {
     nevh_chaos *c = chaos;
     size_t lanes = c->starts * (2 * nevh__chaos_vectors(c) + 1);
     size_t rows = 2 * c->n * nevh__padded(lanes);
@@ -251,17 +251,17 @@ static void lay_out(nevh__arena *a, void *chaos) {
         lay_out_start(a, c, &c->start[i]);
 }
 
-static int plan_memory(nevh_chaos *c) {
+static int chaos_plan_memory(nevh_chaos *c) {
     c->start = nevh__array(c->starts, sizeof *c->start);
-    c->memory = c->start ? nevh__arena_new(lay_out, c) : NULL;
+    c->memory = c->start ? nevh__arena_new(chaos_lay_out, c) : NULL;
     return c->memory ? NEVH_OK : nevh__no_memory(&c->report);
 }
 
-static int plan(nevh_chaos *c, const nevh_chaos_options *o) {
+static int chaos_plan(nevh_chaos *c, const nevh_chaos_options *o) {
     size_t n = c->n;
-    int status = check(c, o);
+    int status = chaos_check(c, o);
     if (!status)
-        status = plan_memory(c);
+        status = chaos_plan_memory(c);
     if (status)
         return status;
     c->options = *o->options;
@@ -270,7 +270,7 @@ static int plan(nevh_chaos *c, const nevh_chaos_options *o) {
     memcpy(c->own + n, c->options.p, n * sizeof *c->own);
     c->options.q = c->own;
     c->options.p = c->own + n;
-    status = plan_field(c);
+    status = chaos_plan_field(c);
     if (!status)
         status = plan_lengths(c, o->integrator);
     if (!status)
@@ -282,8 +282,8 @@ static int plan(nevh_chaos *c, const nevh_chaos_options *o) {
     return status ? status : nevh__chaos_begin(c);
 }
 
-static nevh_chaos *make(const nevh_system *system, const nevh_chaos_options *o,
-                        bool of_members) {
+static nevh_chaos *chaos_make(const nevh_system *system,
+                              const nevh_chaos_options *o, bool of_members) {
     nevh_chaos *c = system && o ? nevh__array(1, sizeof *c) : NULL;
     if (!c)
         return NULL;
@@ -305,7 +305,7 @@ static nevh_chaos *make(const nevh_system *system, const nevh_chaos_options *o,
     if (status)
         nevh__fail_as(&c->report, &system->report);
     else
-        status = plan(c, o);
+        status = chaos_plan(c, o);
     fesetenv(&own);
     c->planned = !status;
     return c;
@@ -313,12 +313,12 @@ static nevh_chaos *make(const nevh_system *system, const nevh_chaos_options *o,
 
 nevh_chaos *nevh_chaos_new(const nevh_system *system,
                            const nevh_chaos_options *o) {
-    return make(system, o, false);
+    return chaos_make(system, o, false);
 }
 
 nevh_chaos *nevh__chaos_of_members(const nevh_system *system,
                                    const nevh_chaos_options *o) {
-    return make(system, o, true);
+    return chaos_make(system, o, true);
 }
 
 void nevh_chaos_free(nevh_chaos *c) {

@@ -67,12 +67,12 @@ static columns own_columns(const nevh_chaos *c) {
     return (columns){c->q, c->p, c->stepper->work.memory};
 }
 
-static size_t rows_of(const nevh_chaos *c) {
+static size_t chaos_batch_rows_of(const nevh_chaos *c) {
     return c->tangent ? 2 * c->n : c->n;
 }
 
 static void copy_all(const nevh_chaos *c, columns from, columns to) {
-    size_t bytes = rows_of(c) * c->width * sizeof(double);
+    size_t bytes = chaos_batch_rows_of(c) * c->width * sizeof(double);
     memcpy(to.q, from.q, bytes);
     memcpy(to.p, from.p, bytes);
     memcpy(to.memory, from.memory,
@@ -88,12 +88,12 @@ static void copy_columns(const nevh_chaos *c, size_t rows, const double *from,
 
 static void copy_start(const nevh_chaos *c, columns from, size_t a, columns to,
                        size_t b) {
-    copy_columns(c, rows_of(c), from.q, a, to.q, b);
-    copy_columns(c, rows_of(c), from.p, a, to.p, b);
+    copy_columns(c, chaos_batch_rows_of(c), from.q, a, to.q, b);
+    copy_columns(c, chaos_batch_rows_of(c), from.p, a, to.p, b);
     copy_columns(c, c->stepper->rows, from.memory, a, to.memory, b);
 }
 
-static void forget(nevh_chaos *c, size_t start) {
+static void chaos_batch_forget(nevh_chaos *c, size_t start) {
     double *memory = c->stepper->work.memory + start * c->lanes;
     for (size_t row = 0; row < c->stepper->rows; row++)
         memset(memory + row * c->width, 0, c->lanes * sizeof *memory);
@@ -106,12 +106,12 @@ static double time_now(const nevh_chaos *c) {
 }
 
 /* The lanes belong to the memory as it is. */
-static void settle(nevh_chaos *c) {
+static void chaos_batch_settle(nevh_chaos *c) {
     c->stepper->last_t = time_now(c);
     nevh__remember(c->stepper, c->q, c->p);
 }
 
-static int take_steps(nevh_chaos *c, double steps) {
+static int chaos_batch_take_steps(nevh_chaos *c, double steps) {
     return nevh_run(c->stepper, time_now(c), c->way * c->dt, (size_t)steps,
                     c->q, c->p, NULL, 0);
 }
@@ -126,15 +126,15 @@ static void step_apart(nevh_chaos *c, double steps) {
         for (size_t k = 0; k < c->starts; k++)
             copy_start(c, x->kept, i, own, k);
         nevh__chaos_fill_up(c);
-        settle(c);
-        if (take_steps(c, steps))
+        chaos_batch_settle(c);
+        if (chaos_batch_take_steps(c, steps))
             x->orbits[i].report = c->stepper->report;
         else
             copy_start(c, own, i, x->kept, i);
     }
     copy_all(c, x->kept, own);
     x->taken += steps;
-    settle(c);
+    chaos_batch_settle(c);
     x->taken -= steps;
 }
 
@@ -165,9 +165,9 @@ static void step_together(nevh_chaos *c, double steps) {
         return;
     if (!plain &&
         !nevh__begin(c->stepper, time_now(c), c->way * c->dt, c->q, c->p))
-        settle(c);
+        chaos_batch_settle(c);
     copy_all(c, own_columns(c), c->batch->kept);
-    if (plain || take_steps(c, steps))
+    if (plain || chaos_batch_take_steps(c, steps))
         step_apart(c, steps);
     pass_steps(c, steps);
 }
@@ -187,7 +187,8 @@ static double steps_to_look(const nevh_chaos *c, size_t start) {
 /* Steps of some ten milliseconds, after which the run may have to end. */
 static double most_steps(const nevh_chaos *c) {
     static const double most_numbers = 1 << 20;
-    return fmax(1, floor(most_numbers / (double)(rows_of(c) * c->width)));
+    return fmax(
+        1, floor(most_numbers / (double)(chaos_batch_rows_of(c) * c->width)));
 }
 
 /* Orbits. */
@@ -201,7 +202,7 @@ static bool any_busy(const nevh_chaos *c, size_t *which) {
     return false;
 }
 
-static void end(nevh_chaos *c, size_t start) {
+static void chaos_batch_end(nevh_chaos *c, size_t start) {
     nevh__chaos_batch *x = c->batch;
     orbit *at = &x->orbits[start];
     nevh__chaos_member found = {
@@ -213,7 +214,7 @@ static void end(nevh_chaos *c, size_t start) {
 }
 
 /* Draws are those of the first start: no member is told from another. */
-static bool begin(nevh_chaos *c, size_t start) {
+static bool chaos_batch_begin(nevh_chaos *c, size_t start) {
     nevh__chaos_batch *x = c->batch;
     orbit *at = &x->orbits[start];
     double until;
@@ -223,15 +224,15 @@ static bool begin(nevh_chaos *c, size_t start) {
         return at->busy = false;
     uint64_t drawn = nevh__chaos_draw(c, 0);
     nevh__chaos_place(c, start, x->state, &drawn);
-    forget(c, start);
+    chaos_batch_forget(c, start);
     at->last = nevh__chaos_steps(c, until);
     if (!(at->last > 0))
-        end(c, start);
+        chaos_batch_end(c, start);
     return true;
 }
 
 /* A start without an orbit goes along with another's. */
-static void fill(nevh_chaos *c) {
+static void chaos_batch_fill(nevh_chaos *c) {
     nevh__chaos_batch *x = c->batch;
     size_t which;
     bool more = !(x->jobs->together && any_busy(c, &which));
@@ -239,7 +240,7 @@ static void fill(nevh_chaos *c) {
         x->taken = 0;
     for (size_t i = 0; more && i < c->starts; i++)
         while (more && !x->orbits[i].busy)
-            more = begin(c, i);
+            more = chaos_batch_begin(c, i);
     if (any_busy(c, &which))
         for (size_t i = 0; i < c->starts; i++)
             if (!x->orbits[i].busy)
@@ -248,7 +249,7 @@ static void fill(nevh_chaos *c) {
 }
 
 /* Looks at a start whose turn it is.  Returns whether its orbit has ended. */
-static bool look(nevh_chaos *c, size_t start) {
+static bool chaos_batch_look(nevh_chaos *c, size_t start) {
     nevh__chaos_batch *x = c->batch;
     orbit *at = &x->orbits[start];
     const nevh__chaos_clock *clock = &c->start[start].clock;
@@ -263,7 +264,7 @@ static bool look(nevh_chaos *c, size_t start) {
         return true;
     }
     if (!c->tangent)
-        forget(c, start);
+        chaos_batch_forget(c, start);
     return over ||
            (x->jobs->aligned && c->start[start].sali < nevh__chaos_aligned(c));
 }
@@ -271,8 +272,8 @@ static bool look(nevh_chaos *c, size_t start) {
 static bool look_at_all(nevh_chaos *c) {
     bool any = false;
     for (size_t i = 0; i < c->starts; i++)
-        if (c->batch->orbits[i].busy && look(c, i)) {
-            end(c, i);
+        if (c->batch->orbits[i].busy && chaos_batch_look(c, i)) {
+            chaos_batch_end(c, i);
             any = true;
         }
     return any;
@@ -291,7 +292,7 @@ void nevh__chaos_batch_run(nevh_chaos *c, const nevh__chaos_jobs *jobs) {
     nevh_stepper_reset(c->stepper);
     while (!x->stopped) {
         if (asks)
-            fill(c);
+            chaos_batch_fill(c);
         if (!any_busy(c, &which))
             break;
         double steps = most_steps(c);

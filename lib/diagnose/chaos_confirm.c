@@ -20,7 +20,7 @@ static double spent_on_terms(const nevh_chaos *c, const nevh_counts *counts) {
            (double)counts->gradients;
 }
 
-static double spent_by(const nevh_chaos *c) {
+static double chaos_confirm_spent_by(const nevh_chaos *c) {
     nevh_counts counts = nevh_chaos_counts(c);
     size_t n = c->tangent ? 2 * c->n : c->n;
     double steps = c->start[0].clock.done * (double)c->width;
@@ -37,13 +37,15 @@ static nevh_chaos_finding finding(const nevh_chaos *c, double growth) {
 
 /* Towards `until`, as long as it costs no more than that; of chaos no further
    than until it is clear, where it is `sought`. */
-static int follow(nevh_chaos *c, double until, double seconds, bool sought,
-                  nevh_chaos_finding *f) {
+static int chaos_confirm_follow(nevh_chaos *c, double until, double seconds,
+                                bool sought, nevh_chaos_finding *f) {
     double t0 = c->t_start, growth = 0;
     int status = nevh_chaos_status(c);
-    for (int i = 1; !status && i <= PIECES && spent_by(c) < seconds; i++) {
+    for (int i = 1;
+         !status && i <= PIECES && chaos_confirm_spent_by(c) < seconds; i++) {
         double last = nevh__chaos_steps(c, t0 + i * (until - t0) / PIECES);
-        while (spent_by(c) < seconds && nevh__chaos_advance(c, last))
+        while (chaos_confirm_spent_by(c) < seconds &&
+               nevh__chaos_advance(c, last))
             ;
         status = c->report.status;
         growth = fmax(growth, nevh__chaos_growth(c, 0));
@@ -75,8 +77,8 @@ int nevh_chaos_find(const nevh_system *system, const nevh_options *options,
                                                      .starts = STARTS});
     int status = nevh_chaos_status(c);
     if (!status)
-        status =
-            follow(c, t1, seconds > 0 ? seconds : usual_seconds, false, found);
+        status = chaos_confirm_follow(
+            c, t1, seconds > 0 ? seconds : usual_seconds, false, found);
     nevh_chaos_free(c);
     fesetenv(&own);
     return status;
@@ -107,8 +109,8 @@ static bool is_chaotic_too(const nevh_chaos_confirmation *c) {
             f->exponent > 2 * f->error);
 }
 
-static void judge(const nevh_chaos_report *run, double value, double error,
-                  nevh_chaos_confirmation *to) {
+static void chaos_confirm_judge(const nevh_chaos_report *run, double value,
+                                double error, nevh_chaos_confirmation *to) {
     const nevh_chaos_finding *f = &to->found;
     to->agrees = nevh_agree(value, error, f->exponent, f->error);
     bool holds = run->verdict == NEVH_CHAOTIC
@@ -126,11 +128,11 @@ static int confirm(const nevh_chaos *c, const nevh_finer *f, double seconds,
     to->how = nevh_finer_how(f);
     snprintf(to->text, sizeof to->text, "%s", nevh_finer_text(f));
     if (!status)
-        status = follow(finer, run.t, seconds, run.verdict == NEVH_CHAOTIC,
-                        &to->found);
+        status = chaos_confirm_follow(finer, run.t, seconds,
+                                      run.verdict == NEVH_CHAOTIC, &to->found);
     nevh_chaos_free(finer);
     if (!status)
-        judge(&run, value, error, to);
+        chaos_confirm_judge(&run, value, error, to);
     return status;
 }
 
@@ -156,7 +158,7 @@ int nevh_chaos_confirm(const nevh_chaos *c, double budget,
     to->verdict = NEVH_UNRESOLVED;
     to->agrees = false;
     if (!status)
-        status = confirm(c, f, part * spent_by(c), to);
+        status = confirm(c, f, part * chaos_confirm_spent_by(c), to);
     nevh_finer_free(f);
     return status;
 }

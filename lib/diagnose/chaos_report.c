@@ -16,7 +16,7 @@ typedef struct {
     double rate, error; /* error: INFINITY where there are too few batches */
 } estimate;
 
-static double elapsed(const nevh_chaos *c, size_t start) {
+static double chaos_report_elapsed(const nevh_chaos *c, size_t start) {
     return c->start[start].clock.done * c->dt;
 }
 
@@ -24,7 +24,7 @@ static size_t first_bin(const nevh_chaos *c, size_t start) {
     const nevh__chaos_clock *clock = &c->start[start].clock;
     double t = 0;
     size_t b = 0;
-    while (b < clock->bin && t < dropped * elapsed(c, start))
+    while (b < clock->bin && t < dropped * chaos_report_elapsed(c, start))
         t += clock->span[b++];
     return b;
 }
@@ -76,15 +76,16 @@ static void add_halves(const nevh_chaos *c, size_t start, size_t log,
 
 /* The exponent that linear growth leaves. */
 static double resolution(const nevh_chaos *c, size_t start) {
-    return -log(dropped) / ((1 - dropped) * elapsed(c, start));
+    return -log(dropped) / ((1 - dropped) * chaos_report_elapsed(c, start));
 }
 
 double nevh__chaos_rate(const nevh_chaos *c, size_t start, size_t i) {
-    return elapsed(c, start) > 0 ? estimate_start(c, start, i).rate : NAN;
+    return chaos_report_elapsed(c, start) > 0 ? estimate_start(c, start, i).rate
+                                              : NAN;
 }
 
 double nevh__chaos_megno(const nevh_chaos *c, size_t start) {
-    double t = elapsed(c, start);
+    double t = chaos_report_elapsed(c, start);
     return t > 0 ? c->start[start].area / t : 0;
 }
 
@@ -130,12 +131,12 @@ static double fewest_crossings(const nevh_chaos *c, size_t start) {
    come together. */
 static bool has_recurred(const nevh_chaos *c, size_t start, double rate,
                          double error) {
-    return elapsed(c, start) >= TURNS * c->period &&
+    return chaos_report_elapsed(c, start) >= TURNS * c->period &&
            (rate < -2 * error || fewest_crossings(c, start) >= CROSSINGS);
 }
 
 static nevh_chaos_verdict verdict_on(const nevh_chaos *c, size_t start) {
-    double t = elapsed(c, start);
+    double t = chaos_report_elapsed(c, start);
     if (!(t > 0))
         return NEVH_EARLY;
     estimate e = estimate_start(c, start, 0);
@@ -161,7 +162,8 @@ double nevh_chaos_exponent(const nevh_chaos *c, size_t i, double *error) {
     double growth[2] = {0, 0}, time[2] = {0, 0};
     if (error)
         *error = INFINITY;
-    if (!c || !c->planned || i >= c->exponents || !(elapsed(c, 0) > 0))
+    if (!c || !c->planned || i >= c->exponents ||
+        !(chaos_report_elapsed(c, 0) > 0))
         return NAN;
     nevh_chaos_verdict verdict = verdict_on(c, 0);
     for (size_t k = 0; k < c->starts; k++) {
@@ -213,7 +215,7 @@ nevh_chaos_report nevh_chaos_result(const nevh_chaos *c) {
     nevh_chaos_report r = {0};
     if (!c || !c->planned)
         return r;
-    r.t = c->t_start + c->way * elapsed(c, 0);
+    r.t = c->t_start + c->way * chaos_report_elapsed(c, 0);
     r.verdict = verdict_among_starts(c);
     r.sali = c->start[0].sali;
     r.megno = nevh__chaos_megno(c, 0);

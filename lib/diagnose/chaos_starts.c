@@ -68,7 +68,7 @@ static void draw_vectors(nevh_chaos *c, size_t start, uint64_t *state) {
     }
 }
 
-static void forget(nevh_chaos *c, nevh__chaos_start *s) {
+static void chaos_starts_forget(nevh_chaos *c, nevh__chaos_start *s) {
     memset(s->log, 0, nevh__chaos_logs(c) * NEVH__BINS * sizeof *s->log);
     s->moment = s->indicator = s->area = s->moved = 0;
     s->sali = sqrt(2);
@@ -93,7 +93,7 @@ uint64_t nevh__chaos_draw(const nevh_chaos *c, size_t number) {
 
 void nevh__chaos_place(nevh_chaos *c, size_t start, const double z[],
                        uint64_t *drawn_from) {
-    forget(c, &c->start[start]);
+    chaos_starts_forget(c, &c->start[start]);
     put_state(c, start, z);
     for (size_t k = 0; k < 2 * c->n; k++) {
         double x = c->start[start].first[k] = z[k] / c->options.scale[k];

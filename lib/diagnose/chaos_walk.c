@@ -20,7 +20,7 @@ static double *row_p(nevh_chaos *c, size_t k) {
 }
 
 /* A lane that was changed has no memory. */
-static void forget(nevh_chaos *c, size_t lane) {
+static void chaos_walk_forget(nevh_chaos *c, size_t lane) {
     nevh_stepper *s = c->stepper;
     for (size_t row = 0; row < s->rows; row++)
         s->work.memory[row * c->width + lane] = 0;
@@ -31,7 +31,7 @@ void nevh__chaos_put(nevh_chaos *c, size_t start, size_t v) {
     const double *w = c->start[start].w + v * 2 * c->n, *s = c->options.scale;
     size_t n = c->n, first = start * c->lanes, a = first + 2 * v + 1;
     if (c->tangent)
-        forget(c, first + v);
+        chaos_walk_forget(c, first + v);
     for (size_t k = 0; k < n; k++) {
         double x = w[k] * s[k], y = w[n + k] * s[n + k];
         if (c->tangent) {
@@ -47,7 +47,7 @@ void nevh__chaos_put(nevh_chaos *c, size_t start, size_t v) {
     }
 }
 
-static void take(nevh_chaos *c, size_t start, size_t v) {
+static void chaos_walk_take(nevh_chaos *c, size_t start, size_t v) {
     double *w = c->start[start].w + v * 2 * c->n;
     const double *s = c->options.scale;
     size_t n = c->n, first = start * c->lanes, a = first + 2 * v + 1;
@@ -62,7 +62,7 @@ static void take(nevh_chaos *c, size_t start, size_t v) {
     }
 }
 
-static double dot(const double a[], const double b[], size_t m) {
+static double chaos_walk_dot(const double a[], const double b[], size_t m) {
     double sum = 0;
     for (size_t k = 0; k < m; k++)
         sum += a[k] * b[k];
@@ -75,7 +75,7 @@ static void scale_by(double a[], double x, size_t m) {
 }
 
 void nevh__chaos_remove_part(double b[], const double a[], size_t m) {
-    double x = dot(a, b, m);
+    double x = chaos_walk_dot(a, b, m);
     for (size_t k = 0; k < m; k++)
         b[k] -= x * a[k];
 }
@@ -87,7 +87,7 @@ static double orthonormalise(double all[], size_t v, size_t m) {
     for (int twice = 0; twice < 2; twice++)
         for (size_t u = 0; u < v; u++)
             nevh__chaos_remove_part(w, all + u * m, m);
-    double length = sqrt(dot(w, w, m));
+    double length = sqrt(chaos_walk_dot(w, w, m));
     if (length > 0)
         scale_by(w, 1 / length, m);
     return length;
@@ -103,8 +103,9 @@ static void index_alignment(nevh_chaos *c, nevh__chaos_start *s) {
     double plus = 0, minus = 0, volume = 1;
     memcpy(c->place, s->w, c->deviations * m * sizeof *s->w);
     for (size_t v = 0; v < c->deviations; v++)
-        scale_by(c->place + v * m,
-                 1 / sqrt(dot(c->place + v * m, c->place + v * m, m)), m);
+        scale_by(
+            c->place + v * m,
+            1 / sqrt(chaos_walk_dot(c->place + v * m, c->place + v * m, m)), m);
     for (size_t k = 0; k < m; k++) {
         plus += pow(c->place[k] + c->place[m + k], 2);
         minus += pow(c->place[k] - c->place[m + k], 2);
@@ -123,8 +124,8 @@ static void index_alignment(nevh_chaos *c, nevh__chaos_start *s) {
 static double look_at_deviation(nevh_chaos *c, size_t start, size_t v) {
     nevh__chaos_start *s = &c->start[start];
     double *w = s->w + v * 2 * c->n;
-    take(c, start, v);
-    double norm = sqrt(dot(w, w, 2 * c->n)), before = s->norm[v];
+    chaos_walk_take(c, start, v);
+    double norm = sqrt(chaos_walk_dot(w, w, 2 * c->n)), before = s->norm[v];
     if (!isfinite(norm) || norm == 0)
         return NAN;
     s->norm[v] = norm;
@@ -140,7 +141,7 @@ static double look_at_frame(nevh_chaos *c, size_t start) {
     nevh__chaos_start *s = &c->start[start];
     double *first = s->w + c->deviations * 2 * c->n, most = 0;
     for (size_t v = 0; v < c->frame; v++)
-        take(c, start, c->deviations + v);
+        chaos_walk_take(c, start, c->deviations + v);
     for (size_t v = 0; v < c->frame; v++) {
         double growth = log(orthonormalise(first, v, 2 * c->n));
         if (!isfinite(growth))
@@ -165,13 +166,13 @@ static void align_orbit(nevh_chaos *c, size_t start) {
             p[i] = p[0];
         }
         if (!same)
-            forget(c, first + i);
+            chaos_walk_forget(c, first + i);
     }
 }
 
 /* A range that has grown was not that of the motion: crossings of it are not yet
    known. */
-static void follow(nevh__course *v, double x) {
+static void chaos_walk_follow(nevh__course *v, double x) {
     static const double grown = 1.05, quarter = 0.25;
     double before = v->high - v->low;
     v->low = fmin(v->low, x);
@@ -195,8 +196,8 @@ static void look_at_orbit(nevh_chaos *c, size_t start) {
         double p = row_p(c, from + k)[lane] / scale[c->n];
         s->moved = fmax(s->moved, fabs(q - s->first[k]));
         s->moved = fmax(s->moved, fabs(p - s->first[c->n + k]));
-        follow(&s->course[k], q);
-        follow(&s->course[c->n + k], p);
+        chaos_walk_follow(&s->course[k], q);
+        chaos_walk_follow(&s->course[c->n + k], p);
     }
 }
 
@@ -264,7 +265,7 @@ double nevh__chaos_look(nevh_chaos *c, size_t start) {
     return growth;
 }
 
-static int look(nevh_chaos *c, double steps) {
+static int chaos_walk_look(nevh_chaos *c, double steps) {
     double most = 0;
     for (size_t i = 0; i < c->starts; i++) {
         nevh__chaos_clock *clock = &c->start[i].clock;
@@ -302,7 +303,7 @@ bool nevh__chaos_advance(nevh_chaos *c, double last) {
         nevh__fail(&c->report, status, "%s", nevh_stepper_message(c->stepper));
         return false;
     }
-    look(c, steps);
+    chaos_walk_look(c, steps);
     if (!c->tangent) /* what one lane remembers no other knows of */
         nevh_stepper_reset(c->stepper);
     return true;

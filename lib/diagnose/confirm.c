@@ -32,7 +32,7 @@ struct nevh_finer {
     double part;
 };
 
-static double spent_by(const nevh_stepper *s, size_t steps) {
+static double confirm_spent_by(const nevh_stepper *s, size_t steps) {
     nevh_counts c = nevh_stepper_counts(s);
     return nevh_counts_seconds(&c, s->work.n, s->work.integrator,
                                nevh_stepper_order(s), steps);
@@ -73,7 +73,7 @@ static double cost_of(nevh_finer *f, nevh_stepper *s, double dt, double until,
         double t =
             s->own_time && i ? nevh_stepper_time(s) : a->t0 + (double)i * dt;
         status = nevh_stepper_apply(s, t, dt, z, z + n);
-        cost = spent_by(s, i + 1);
+        cost = confirm_spent_by(s, i + 1);
     }
     free(z);
     if (status == NEVH_ENOMEM)
@@ -106,7 +106,7 @@ static choice choice_of(const nevh_finer_question *q, nevh_finer_kind kind) {
     return c;
 }
 
-static void describe(nevh_finer *f) {
+static void confirm_describe(nevh_finer *f) {
     const choice *c = &f->chosen;
     const char *name = nevh_integrator_name(c->integrator);
     if (c->kind != NEVH_FINER_STEPS)
@@ -120,8 +120,8 @@ static void describe(nevh_finer *f) {
 
 /* Takes that kind where it can be planned and costs no more than `most`; `whole`
    is what the question cost for the same time. */
-static bool choose(nevh_finer *f, nevh_finer_kind kind, double until,
-                   double whole, double most) {
+static bool confirm_choose(nevh_finer *f, nevh_finer_kind kind, double until,
+                           double whole, double most) {
     choice c = choice_of(&f->question, kind);
     nevh_stepper *s = stepper_of(f->system, &c);
     int status = nevh_stepper_status(s);
@@ -136,7 +136,7 @@ static bool choose(nevh_finer *f, nevh_finer_kind kind, double until,
     f->stepper = stepper_of(f->system, &f->chosen);
     f->part = cost > 0 ? fmin(1, f->question.budget * whole / cost) : 1;
     f->report = (nevh__report){0};
-    describe(f);
+    confirm_describe(f);
     return true;
 }
 
@@ -149,13 +149,14 @@ static bool choose_any(nevh_finer *f, double until, double whole) {
         nevh_finer_kind kind = kinds[i % 3];
         bool free = i >= 3 || kind == NEVH_FINER_STEPS;
         if (f->question.kinds & kind &&
-            choose(f, kind, until, whole, free ? INFINITY : whole / half))
+            confirm_choose(f, kind, until, whole,
+                           free ? INFINITY : whole / half))
             return true;
     }
     return false;
 }
 
-static int plan(nevh_finer *f) {
+static int confirm_plan(nevh_finer *f) {
     const nevh_finer_question *q = &f->question;
     size_t steps = steps_to_try(q);
     double until = (double)steps * fabs(q->dt);
@@ -202,7 +203,7 @@ nevh_finer *nevh_finer_new(const nevh_system *system,
         nevh__fail(&f->report, NEVH_EINVAL,
                    "a finer run needs an integrator, a start, a step and a "
                    "number of steps");
-    else if (plan(f)) {
+    else if (confirm_plan(f)) {
         nevh_stepper_free(f->stepper);
         f->stepper = NULL;
     }
@@ -256,8 +257,9 @@ static int watch_budget(void *data, size_t step, double t, const double q[],
     budget_watch *w = data;
     (void)q, (void)p;
     w->t = t;
-    return spent_by(w->finer->stepper, step) > w->finer->allowed ? NEVH_STOPPED
-                                                                 : NEVH_OK;
+    return confirm_spent_by(w->finer->stepper, step) > w->finer->allowed
+               ? NEVH_STOPPED
+               : NEVH_OK;
 }
 
 int nevh_finer_run(nevh_finer *f, double t_end, double q[], double p[],

@@ -11,8 +11,8 @@ typedef NEVH__FINE(nevh__series_orbit) orbit;
 
 /* Series up to the end, or `most` of them, or until they have cost a second or so.
    *ends is the time where the solution itself ends. */
-static int follow(orbit *o, double t1, double most, double *ends,
-                  nevh__report *report) {
+static int ends_follow(orbit *o, double t1, double most, double *ends,
+                       nevh__report *report) {
     static const double most_work = 5e8; /* nanoseconds or so */
     int status = NEVH_OK;
     most = fmin(most, most_work / NEVH__FINE(nevh__series_orbit_work)(o));
@@ -23,8 +23,8 @@ static int follow(orbit *o, double t1, double most, double *ends,
     return status;
 }
 
-static int start(orbit *o, double t0, const double q[], const double p[],
-                 nevh__report *report) {
+static int ends_start(orbit *o, double t0, const double q[], const double p[],
+                      nevh__report *report) {
     size_t n = o->n;
     nevh__wide *state = nevh__array(2 * n, sizeof *state);
     for (size_t k = 0; state && k < n; k++)
@@ -42,9 +42,9 @@ typedef struct {
     double tolerance, shortest, longest, most;
 } means;
 
-static int walk(const nevh_system *s, double t0, double t1, const double q[],
-                const double p[], const means *by, double *ends,
-                nevh__report *report) {
+static int ends_walk(const nevh_system *s, double t0, double t1,
+                     const double q[], const double p[], const means *by,
+                     double *ends, nevh__report *report) {
     size_t n = nevh_system_dof(s);
     double *rates = s ? nevh__array(n, sizeof *rates) : NULL;
     bool timed = s && !(nevh_system_traits(s) & NEVH_AUTONOMOUS);
@@ -65,9 +65,9 @@ static int walk(const nevh_system *s, double t0, double t1, const double q[],
         o.shortest = by->shortest;
         o.timing = timing;
         o.backward = t1 < t0;
-        status = start(&o, t0, q, p, report);
+        status = ends_start(&o, t0, q, p, report);
         if (!status)
-            status = follow(&o, t1, by->most, ends, report);
+            status = ends_follow(&o, t1, by->most, ends, report);
     }
     fesetenv(&own);
     NEVH__FINE(nevh__series_orbit_clear)(&o);
@@ -82,7 +82,7 @@ double nevh_solution_ends(const nevh_system *s, double t0, double t1,
     static const means fine = {1e-16, 1e-25, 1, INFINITY};
     nevh__report ignored = {0};
     double ends = NAN;
-    walk(s, t0, t1, q, p, &fine, &ends, &ignored);
+    ends_walk(s, t0, t1, q, p, &fine, &ends, &ignored);
     return ends;
 }
 
@@ -93,7 +93,7 @@ int nevh_solution_smooth(const nevh_system *s, double t0, double t1,
     double n = (double)nevh_system_dof(s), ends = NAN;
     means coarse = {1e-10, 1e-15, 1. / 128, fmin(most, most_pairs / (n * n))};
     nevh__report report = {0};
-    int status = walk(s, t0, t1, q, p, &coarse, &ends, &report);
+    int status = ends_walk(s, t0, t1, q, p, &coarse, &ends, &report);
     bool over =
         isfinite(ends) ||
         (status == NEVH_EDOM && isfinite(nevh_solution_ends(s, t0, t1, q, p)));

@@ -12,7 +12,7 @@
    small. */
 static const double of_met = 0.1;
 
-static void lay_out(nevh__arena *a, void *energy) {
+static void energy_lay_out(nevh__arena *a, void *energy) {
     nevh_energy *e = energy;
     size_t n = e->n, width = e->width, effects = e->field->system->n_effects;
     double **const numbers[] = {
@@ -31,7 +31,7 @@ static void lay_out(nevh__arena *a, void *energy) {
     e->booking = nevh__arena_take(a, 3 * n, sizeof(double));
 }
 
-static int plan(nevh_energy *e, const nevh_system *s, bool portable) {
+static int energy_plan(nevh_energy *e, const nevh_system *s, bool portable) {
     e->n = s->n;
     nevh_options values = {.gradient = &nevh__no_gradient,
                            .width = e->width,
@@ -41,7 +41,7 @@ static int plan(nevh_energy *e, const nevh_system *s, bool portable) {
         return nevh__no_memory(&e->report);
     if (e->field->report.status)
         return nevh__fail_as(&e->report, &e->field->report);
-    e->memory = nevh__arena_new(lay_out, e);
+    e->memory = nevh__arena_new(energy_lay_out, e);
     bool passes = e->width > 1 || nevh__passage_init(&e->passage, s);
     return e->memory && passes ? NEVH_OK : nevh__no_memory(&e->report);
 }
@@ -52,7 +52,7 @@ nevh_energy *nevh_energy_new(const nevh_system *system,
     if (!e)
         return NULL;
     e->width = options && options->width ? options->width : 1;
-    if (plan(e, system, options && options->portable) != NEVH_ENOMEM)
+    if (energy_plan(e, system, options && options->portable) != NEVH_ENOMEM)
         return e;
     nevh_energy_free(e);
     return NULL;
@@ -165,8 +165,8 @@ int nevh_energy_set_scale(nevh_energy *e, double scale) {
     return NEVH_OK;
 }
 
-static void gather(nevh_energy *e, size_t lane, const double q[],
-                   const double p[]) {
+static void energy_gather(nevh_energy *e, size_t lane, const double q[],
+                          const double p[]) {
     if (e->field->lanes)
         nevh__field_alone(e->field, lane);
     for (size_t k = 0; k < e->n; k++) {
@@ -175,11 +175,11 @@ static void gather(nevh_energy *e, size_t lane, const double q[],
     }
 }
 
-static int begin(nevh_energy *e, size_t lane, double t, const double q[],
-                 const double p[]) {
+static int energy_begin(nevh_energy *e, size_t lane, double t, const double q[],
+                        const double p[]) {
     e->initial[lane] = e->h[lane];
     e->gained[lane] = gain(e, lane);
-    gather(e, lane, q, p);
+    energy_gather(e, lane, q, p);
     int status = nevh__energy_find_scale(e, lane, t);
     e->started[lane] = !status;
     e->begun |= !status;
@@ -193,10 +193,10 @@ static void take_size(nevh_energy *e, size_t lane, double size) {
 
 /* The size of the energies that rounding is of: looked for from time to time,
    and where the error rises, which it does where they are large. */
-static int look(nevh_energy *e, size_t lane, double t, const double q[],
-                const double p[]) {
+static int energy_look(nevh_energy *e, size_t lane, double t, const double q[],
+                       const double p[]) {
     double h, roundoff, size;
-    gather(e, lane, q, p);
+    energy_gather(e, lane, q, p);
     int status = nevh__field_moving_values(
         e->field, 1, &t, e->state, e->state + e->n, &h, &roundoff, &size);
     take_size(e, lane, status ? 0 : size);
@@ -290,7 +290,7 @@ static int add_error(nevh_energy *e, size_t lane, double t) {
 static int add_state(nevh_energy *e, size_t lane, size_t step, const double q[],
                      const double p[]) {
     double t = e->t[lane];
-    int status = e->started[lane] ? NEVH_OK : begin(e, lane, t, q, p);
+    int status = e->started[lane] ? NEVH_OK : energy_begin(e, lane, t, q, p);
     e->steps[lane] = step;
     if (!status && e->width == 1)
         look_back(e, t, q, p);
@@ -301,7 +301,7 @@ static int observe_lane(nevh_energy *e, size_t lane, size_t step,
                         const double q[], const double p[]) {
     int status = add_state(e, lane, step, q, p);
     if (!status && is_time_to_look(e, lane))
-        status = look(e, lane, e->t[lane], q, p);
+        status = energy_look(e, lane, e->t[lane], q, p);
     look_again_later(e, lane);
     return status;
 }
@@ -326,7 +326,7 @@ int nevh_energy_observe(void *energy, size_t step, double t, const double q[],
 /* Each lane alone, where one of them has no energy. */
 static void value_of_lane(nevh_energy *e, size_t lane, const double q[],
                           const double p[]) {
-    gather(e, lane, q, p);
+    energy_gather(e, lane, q, p);
     if (nevh_field_value(e->field, 1, &e->t[lane], e->state, e->state + e->n,
                          &e->h[lane]))
         e->h[lane] = NAN;
@@ -347,7 +347,7 @@ static void look_at_lanes(nevh_energy *e, bool on[], const double q[],
         if (all)
             take_size(e, lane, size[lane]);
         else
-            on[lane] = !look(e, lane, e->t[lane], q, p);
+            on[lane] = !energy_look(e, lane, e->t[lane], q, p);
         look_again_later(e, lane);
     }
 }

@@ -26,8 +26,8 @@ static bool value_at(nevh__book *b, const step *s, double of, double t,
 }
 
 /* The change of H from one time to another, at the state of a third. */
-static double change(nevh__book *b, const step *s, double of, double t0,
-                     double t1) {
+static double energy_book_change(nevh__book *b, const step *s, double of,
+                                 double t0, double t1) {
     double before, after;
     bool known =
         value_at(b, s, of, t0, 0, &before) && value_at(b, s, of, t1, 0, &after);
@@ -64,14 +64,14 @@ static double integral(nevh__book *b, const step *s, bool first) {
     while (forward ? t < end : t > end) {
         double edge = nevh__timing_edge(b->timing, t, forward);
         double next = forward ? fmin(edge, end) : fmax(edge, end);
-        sum += change(b, s, t + (next - t) / 2, t, next);
+        sum += energy_book_change(b, s, t + (next - t) / 2, t, next);
         t = next;
     }
     return sum;
 }
 
 /* All jumps that a step passes. */
-static double jumps(nevh__book *b, const step *s, bool first) {
+static double energy_book_jumps(nevh__book *b, const step *s, bool first) {
     double start = s->from[2 * b->n], sum = 0;
     bool forward = s->t > start;
     const nevh_time_break *k = nevh__timing_next(b->timing, start, forward);
@@ -82,7 +82,7 @@ static double jumps(nevh__book *b, const step *s, bool first) {
         double t1 = forward ? k->after : k->before;
         bool inside = first && k->before < start && start < k->after;
         if (k->jump) /* the value at the start is H0's */
-            sum += change(b, s, t0, inside ? start : t0, t1);
+            sum += energy_book_change(b, s, t0, inside ? start : t0, t1);
     }
     return sum;
 }
@@ -94,7 +94,7 @@ double nevh__book_step(nevh__book *b, const double from[], bool first, double t,
     b->came = came;
     if (!b->timing || !isfinite(came))
         return 0;
-    double jumped = jumps(b, &s, first);
+    double jumped = energy_book_jumps(b, &s, first);
     if (!nevh__timing_is_fast(b->timing, from[2 * b->n], t)) {
         b->booked += jumped;
         return 0;

@@ -71,7 +71,8 @@ static double range_of(const motion *m) {
     return most;
 }
 
-static void look(void *context, double t, double h, const double y[]) {
+static void energy_scale_look(void *context, double t, double h,
+                              const double y[]) {
     motion *m = context;
     (void)h;
     if (m->count == MOST || !values_of(m, t, y, m->now))
@@ -108,7 +109,7 @@ static double energy_of(const motion *m) {
     return isfinite(last) && last <= growing * half ? last : 0;
 }
 
-static bool allocate(motion *m) {
+static bool energy_scale_allocate(motion *m) {
     size_t terms = m->values->n_terms, n = m->values->n;
     m->now = nevh__array(4 * terms + 3 * n + 2 * MOST, sizeof *m->now);
     m->rest = m->now + terms;
@@ -121,8 +122,8 @@ static bool allocate(motion *m) {
     return m->now;
 }
 
-static bool follow(motion *m, double t, const double q[], const double p[],
-                   double start[]) {
+static bool energy_scale_follow(motion *m, double t, const double q[],
+                                const double p[], double start[]) {
     nevh_field *values = m->values;
     nevh_options o = {.gradient = nevh__best_gradient(values->system),
                       .t = t,
@@ -135,10 +136,10 @@ static bool follow(motion *m, double t, const double q[], const double p[],
     memcpy(start, q, values->n * sizeof *q);
     memcpy(start + values->n, p, values->n * sizeof *p);
     m->from = q;
-    look(m, t, 0, start);
+    energy_scale_look(m, t, 0, start);
     double *sizes = start + 2 * values->n;
     fine = fine && nevh__follow_orbit(differences ? own : values, t, q, p,
-                                      sizes, look, m);
+                                      sizes, energy_scale_look, m);
     nevh_field_free(own);
     return fine;
 }
@@ -151,7 +152,8 @@ static double orbit_energy(nevh_field *values, double t, const double q[],
     double *state = nevh__array(4 * values->n, sizeof *state);
     fenv_t own; /* as in nevh_stepper_new */
     feholdexcept(&own);
-    bool fine = state && allocate(&m) && follow(&m, t, q, p, state);
+    bool fine = state && energy_scale_allocate(&m) &&
+                energy_scale_follow(&m, t, q, p, state);
     double energy = fine && is_resolved(&m) ? energy_of(&m) : 0;
     fesetenv(&own);
     free(m.now);

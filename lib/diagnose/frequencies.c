@@ -61,8 +61,8 @@ static void leave_out_noise(const nevh__spectrum *a, nevh_spectral_line lines[],
     *found = kept;
 }
 
-static bool describe(nevh__spectrum *a, double h, nevh_spectral_line lines[],
-                     size_t *found) {
+static bool frequencies_describe(nevh__spectrum *a, double h,
+                                 nevh_spectral_line lines[], size_t *found) {
     nevh__spectrum half, again;
     size_t count = (a->count + 1) / 2;
     bool opened = nevh__spectrum_open(&half, h, count, a->values, 1);
@@ -95,7 +95,8 @@ static int by_amplitude(const void *a, const void *b) {
 }
 
 /* Looks for samples of which there are no lines. */
-static int check(double h, size_t count, const double values[], size_t most) {
+static int frequencies_check(double h, size_t count, const double values[],
+                             size_t most) {
     if (!values || count < NEVH_FEWEST_SAMPLES || !(h > 0) || !most)
         return NEVH_EINVAL;
     for (size_t k = 0; k < count; k++)
@@ -107,14 +108,15 @@ static int check(double h, size_t count, const double values[], size_t most) {
 int nevh_frequencies(double h, size_t count, const double values[], size_t most,
                      nevh_spectral_line lines[], size_t *found) {
     nevh__spectrum a;
-    int status = lines && found ? check(h, count, values, most) : NEVH_EINVAL;
+    int status = lines && found ? frequencies_check(h, count, values, most)
+                                : NEVH_EINVAL;
     if (found)
         *found = 0;
     if (status)
         return status;
     bool good = nevh__spectrum_open(&a, h, count, values, most) &&
                 nevh__spectrum_find_lines(&a, most) &&
-                describe(&a, h, lines, found);
+                frequencies_describe(&a, h, lines, found);
     nevh__spectrum_close(&a);
     if (good)
         qsort(lines, *found, sizeof *lines, by_amplitude);
@@ -125,7 +127,7 @@ double nevh__main_frequency(double h, size_t count, const double values[],
                             size_t most) {
     nevh__spectrum a;
     double w = NAN, largest = -1;
-    if (check(h, count, values, most))
+    if (frequencies_check(h, count, values, most))
         return NAN;
     bool good = nevh__spectrum_open(&a, h, count, values, most) &&
                 nevh__spectrum_find_lines(&a, most);

@@ -60,8 +60,8 @@ static bool is_loop(const nevh_loop_options *o) {
     return good;
 }
 
-static int check_options(nevh_loop *l, const nevh_options *o,
-                         const nevh_integrator *scheme) {
+static int loop_check_options(nevh_loop *l, const nevh_options *o,
+                              const nevh_integrator *scheme) {
     if (!is_loop(&l->options))
         return nevh__fail(&l->report, NEVH_EINVAL,
                           "a loop needs a curve, corners that rise within "
@@ -108,7 +108,7 @@ static int plan_corners(nevh_loop *l) {
     return NEVH_OK;
 }
 
-static void lay_out(nevh__arena *a, void *loop) {
+static void loop_lay_out(nevh__arena *a, void *loop) {
     nevh_loop *l = loop;
     size_t times = l->options.times, n = l->n;
     double **const numbers[] = {&l->taken_area, &l->taken_error, &l->unit,
@@ -125,8 +125,8 @@ static void lay_out(nevh__arena *a, void *loop) {
     l->inside = nevh__arena_take(a, times, sizeof(bool));
 }
 
-static int plan_memory(nevh_loop *l) {
-    l->memory = nevh__arena_new(lay_out, l);
+static int loop_plan_memory(nevh_loop *l) {
+    l->memory = nevh__arena_new(loop_lay_out, l);
     return l->memory ? NEVH_OK : nevh__no_memory(&l->report);
 }
 
@@ -140,8 +140,8 @@ nevh_loop *nevh_loop_new(const nevh_system *s, const nevh_integrator *scheme,
         return NULL;
     l->options = *loop;
     l->n = nevh_system_dof(s);
-    if (!check_options(l, o, scheme) && !plan_corners(l) && !plan_memory(l) &&
-        !plan_nodes(l))
+    if (!loop_check_options(l, o, scheme) && !plan_corners(l) &&
+        !loop_plan_memory(l) && !plan_nodes(l))
         plan_stepper(l, s, scheme, *o);
     return l;
 }
@@ -180,7 +180,7 @@ static int put(nevh_loop *l, nevh__queue *to, double from, double to_s,
 }
 
 /* The length of the box in one direction; 0 if it is rounding. */
-static double length(const nevh_loop *l, size_t i) {
+static double loop_length(const nevh_loop *l, size_t i) {
     static const double rounding = 1e-13;
     double low = l->low[i], high = l->high[i];
     return high - low > rounding * fmax(fabs(low), fabs(high)) ? high - low : 0;
@@ -200,7 +200,7 @@ static int find_units(nevh_loop *l, const nevh__queue *all) {
         double box = 0;
         for (size_t k = 0; k < l->n; k++) {
             size_t i = (time * l->n + k) * 2;
-            box += length(l, i) * length(l, i + 1);
+            box += loop_length(l, i) * loop_length(l, i + 1);
             l->centre[time * l->n + k] = (l->low[i] + l->high[i]) / 2;
         }
         if (time == 0 && !(box > 0 && fabs(l->area[0]) > nothing * box))
@@ -212,7 +212,7 @@ static int find_units(nevh_loop *l, const nevh__queue *all) {
     return NEVH_OK;
 }
 
-static int accept(nevh_loop *l, nevh__panel at) {
+static int loop_accept(nevh_loop *l, nevh__panel at) {
     for (size_t i = 0; i < l->reach; i++) {
         l->area[i] += l->taken_area[i];
         if (l->taken_noise[i])
@@ -235,7 +235,7 @@ static int accept(nevh_loop *l, nevh__panel at) {
 
 /* Accepts a panel that is smooth at all times, or that is the last resort; else
    it waits to be cut. */
-static int take(nevh_loop *l, nevh__panel at, bool last) {
+static int loop_take(nevh_loop *l, nevh__panel at, bool last) {
     if (l->options.shapes)
         at.states = nevh__array(2 * l->n * NEVH__NODES * l->options.times,
                                 sizeof(double));
@@ -245,7 +245,7 @@ static int take(nevh_loop *l, nevh__panel at, bool last) {
     int status = nevh__loop_follow(
         l, &at, last ? nevh__loop_keep : nevh__loop_keep_smooth);
     if (!status && (last || l->taken_times >= l->reach))
-        return accept(l, at);
+        return loop_accept(l, at);
     free(at.states);
     return status ? status
                   : put(l, &l->rough[l->taken_times], at.from, at.to,
@@ -253,18 +253,18 @@ static int take(nevh_loop *l, nevh__panel at, bool last) {
 }
 
 /* Cuts the panel that is rough first, while there may be more. */
-static int cut(nevh_loop *l, nevh__queue *from, size_t waiting) {
+static int loop_cut(nevh_loop *l, nevh__queue *from, size_t waiting) {
     nevh__panel at = from->item[from->front++];
     size_t most = most_panels(l), panels = l->panels + waiting;
     size_t parts = panels + at.parts <= most ? at.parts : 2;
     double length = (at.to - at.from) / (double)parts;
     int status = NEVH_OK;
     if (panels >= most || at.to - at.from < shortest)
-        return take(l, at, true);
+        return loop_take(l, at, true);
     for (size_t i = 0; !status && i < parts; i++) {
         double begins = at.from + (double)i * length;
         double ends = i + 1 < parts ? begins + length : at.to;
-        status = take(l, (nevh__panel){begins, ends, 0, NULL}, false);
+        status = loop_take(l, (nevh__panel){begins, ends, 0, NULL}, false);
     }
     return status;
 }
@@ -281,12 +281,12 @@ static int cut_all(nevh_loop *l) {
         }
         if (!first)
             break;
-        status = cut(l, first, waiting);
+        status = loop_cut(l, first, waiting);
     }
     return status;
 }
 
-static int begin(nevh_loop *l) {
+static int loop_begin(nevh_loop *l) {
     nevh__queue all = {0};
     int status = NEVH_OK;
     for (size_t c = 0; !status && c < l->options.n_corners; c++)
@@ -298,7 +298,7 @@ static int begin(nevh_loop *l) {
     if (!status)
         status = find_units(l, &all);
     for (size_t i = 0; !status && i < all.count; i++)
-        status = take(l, all.item[i], false);
+        status = loop_take(l, all.item[i], false);
     free(all.item);
     return status;
 }
@@ -315,7 +315,7 @@ int nevh_loop_carry(nevh_loop *l) {
         return l->report.status;
     l->carried = true;
     l->reach = l->options.times;
-    int status = begin(l);
+    int status = loop_begin(l);
     if (!status)
         status = cut_all(l);
     if (!status)

@@ -46,7 +46,7 @@ static void spread_out(const inside *x, double at_q, double at_p) {
     }
 }
 
-static double slope_of(const double image[], double length) {
+static double loop_inside_slope_of(const double image[], double length) {
     double sum = 0;
     for (int c = 0; c < SIDE / 2; c++)
         sum += weights[c] * (image[2 * c] - image[2 * c + 1]) /
@@ -56,8 +56,10 @@ static double slope_of(const double image[], double length) {
 
 static double determinant(const inside *x) {
     const double *q = x->loop->q, *p = x->loop->p;
-    return slope_of(q, x->length[0]) * slope_of(p + SIDE, x->length[1]) -
-           slope_of(p, x->length[0]) * slope_of(q + SIDE, x->length[1]);
+    return loop_inside_slope_of(q, x->length[0]) *
+               loop_inside_slope_of(p + SIDE, x->length[1]) -
+           loop_inside_slope_of(p, x->length[0]) *
+               loop_inside_slope_of(q + SIDE, x->length[1]);
 }
 
 static int carry_point(inside *x, double q, double p, double weight,

@@ -16,7 +16,7 @@ void nevh__loop_expand(const nevh_loop *l, const double value[], double from,
     }
 }
 
-static double largest(const double coefficient[], int from, int to) {
+static double loop_panel_largest(const double coefficient[], int from, int to) {
     double most = 0;
     for (int k = from; k < to; k++)
         most = fmax(most, fabs(coefficient[k]));
@@ -27,15 +27,18 @@ static double largest(const double coefficient[], int from, int to) {
    noise, of rounding or of differences, which no shorter panel has less of. */
 static bool is_noise(const double coefficient[]) {
     static const double little = 1e-5, same = 0.1;
-    double level = largest(coefficient, NEVH__NODES - TAIL, NEVH__NODES);
-    return level <= little * largest(coefficient, 1, NEVH__NODES) &&
-           level >= same * largest(coefficient, NEVH__NODES - 2 * TAIL,
-                                   NEVH__NODES - TAIL);
+    double level =
+        loop_panel_largest(coefficient, NEVH__NODES - TAIL, NEVH__NODES);
+    return level <= little * loop_panel_largest(coefficient, 1, NEVH__NODES) &&
+           level >= same * loop_panel_largest(coefficient,
+                                              NEVH__NODES - 2 * TAIL,
+                                              NEVH__NODES - TAIL);
 }
 
 /* Leaves out what is noise at the end. */
-static int length_of(const double coefficient[]) {
-    double level = 2 * largest(coefficient, NEVH__NODES - TAIL, NEVH__NODES);
+static int loop_panel_length_of(const double coefficient[]) {
+    double level =
+        2 * loop_panel_largest(coefficient, NEVH__NODES - TAIL, NEVH__NODES);
     int length = NEVH__NODES;
     while (length > 2 && fabs(coefficient[length - 1]) <= level)
         length--;
@@ -44,7 +47,8 @@ static int length_of(const double coefficient[]) {
 
 /* The integral of q dp of two series: that of P_a P_b' is 2 where b - a is odd
    and positive, else 0. */
-static double product(const double a[], int na, const double b[], int nb) {
+static double loop_panel_product(const double a[], int na, const double b[],
+                                 int nb) {
     double sum = 0;
     for (int j = 1; j < nb; j++)
         for (int i = j - 1; i >= 0; i -= 2)
@@ -59,12 +63,12 @@ static double tail_of(const double a[], const double b[]) {
         sum_a += fabs(a[k]);
         sum_b += fabs(b[k]);
     }
-    return 2 * (largest(a, NEVH__NODES - TAIL, NEVH__NODES) * sum_b +
-                largest(b, NEVH__NODES - TAIL, NEVH__NODES) * sum_a);
+    return 2 * (loop_panel_largest(a, NEVH__NODES - TAIL, NEVH__NODES) * sum_b +
+                loop_panel_largest(b, NEVH__NODES - TAIL, NEVH__NODES) * sum_a);
 }
 
 /* The panel as it is. */
-static void integrate(nevh_loop *l, size_t time) {
+static void loop_panel_integrate(nevh_loop *l, size_t time) {
     double sum = 0, tail = 0;
     bool noise = true;
     for (size_t k = 0; k < l->n; k++) {
@@ -76,8 +80,9 @@ static void integrate(nevh_loop *l, size_t time) {
         noise = noise && (own <= tolerance * l->unit[time] ||
                           (is_noise(a) && is_noise(b)));
         sum += is_noise(a) && is_noise(b)
-                   ? product(a, length_of(a), b, length_of(b))
-                   : product(a, NEVH__NODES, b, NEVH__NODES);
+                   ? loop_panel_product(a, loop_panel_length_of(a), b,
+                                        loop_panel_length_of(b))
+                   : loop_panel_product(a, NEVH__NODES, b, NEVH__NODES);
         tail += own;
     }
     l->taken_area[time] = sum;
@@ -97,7 +102,7 @@ int nevh__loop_place(nevh_loop *l, const nevh__panel *at) {
                : NEVH_OK;
 }
 
-static int advance(nevh_loop *l, size_t time) {
+static int loop_panel_advance(nevh_loop *l, size_t time) {
     size_t from = time ? l->steps[time - 1] : 0;
     if (l->steps[time] == from)
         return NEVH_OK;
@@ -123,7 +128,7 @@ int nevh__loop_follow(nevh_loop *l, nevh__panel *at,
         return status;
     nevh_stepper_reset(l->stepper);
     for (size_t i = 0; i < l->reach; i++) {
-        status = advance(l, i);
+        status = loop_panel_advance(l, i);
         if (status) {
             end_at(l, i, status);
             break;
@@ -134,7 +139,7 @@ int nevh__loop_follow(nevh_loop *l, nevh__panel *at,
     return NEVH_OK;
 }
 
-static void widen(double *low, double *high, double x) {
+static void loop_panel_widen(double *low, double *high, double x) {
     *low = fmin(*low, x);
     *high = fmax(*high, x);
 }
@@ -145,17 +150,19 @@ bool nevh__loop_measure(nevh_loop *l, nevh__panel *at, size_t time) {
     for (size_t k = 0; k < l->n; k++)
         for (size_t j = 0; j < NEVH__NODES; j++) {
             size_t i = (time * l->n + k) * 2;
-            widen(&l->low[i], &l->high[i], l->q[k * NEVH__NODES + j]);
-            widen(&l->low[i + 1], &l->high[i + 1], l->p[k * NEVH__NODES + j]);
+            loop_panel_widen(&l->low[i], &l->high[i],
+                             l->q[k * NEVH__NODES + j]);
+            loop_panel_widen(&l->low[i + 1], &l->high[i + 1],
+                             l->p[k * NEVH__NODES + j]);
         }
-    integrate(l, time);
+    loop_panel_integrate(l, time);
     l->area[time] += l->taken_area[time];
     return true;
 }
 
 bool nevh__loop_keep(nevh_loop *l, nevh__panel *at, size_t time) {
     size_t size = l->n * NEVH__NODES;
-    integrate(l, time);
+    loop_panel_integrate(l, time);
     if (l->options.shapes) {
         memcpy(at->states + 2 * size * time, l->q, size * sizeof(double));
         memcpy(at->states + 2 * size * time + size, l->p,

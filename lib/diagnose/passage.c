@@ -23,8 +23,8 @@ void nevh__passage_clear(nevh__passage *s) {
     free(s->before);
 }
 
-static void put(const nevh__passage *s, double to[], double t, const double q[],
-                const double p[]) {
+static void passage_put(const nevh__passage *s, double to[], double t,
+                        const double q[], const double p[]) {
     size_t n = s->system->n;
     memcpy(to, q, n * sizeof *q);
     memcpy(to + n, p, n * sizeof *p);
@@ -33,7 +33,7 @@ static void put(const nevh__passage *s, double to[], double t, const double q[],
 
 void nevh__passage_keep(nevh__passage *s, double t, const double q[],
                         const double p[]) {
-    put(s, s->before, t, q, p);
+    passage_put(s, s->before, t, q, p);
 }
 
 /* The first part that may have a pole; SIZE_MAX: none. */
@@ -62,7 +62,7 @@ void nevh__passage_look(nevh__passage *s, double t, const double q[],
     int left = MOST_PARTS;
     if (s->found || s->looks++ >= MOST_LOOKS)
         return;
-    put(s, s->now, t, q, p);
+    passage_put(s, s->now, t, q, p);
     if (!s->parts.failed && has_pole(s, 0, 1, &left)) {
         s->found = true;
         s->at = t;

@@ -44,8 +44,8 @@ static int plan_lengths(nevh_rates *r, const nevh_system *s,
 }
 
 /* Exact derivatives where all terms bring them. */
-static int plan_field(nevh_rates *r, const nevh_system *s,
-                      const nevh_options *given) {
+static int rates_plan_field(nevh_rates *r, const nevh_system *s,
+                            const nevh_options *given) {
     nevh_options o = *given;
     o.width = 1;
     o.scale = r->length;
@@ -106,7 +106,7 @@ nevh_rates *nevh_rates_new(const nevh_system *s, const nevh_options *options) {
     r->n = nevh_system_dof(s);
     if (!plan_buffers(r))
         nevh__no_memory(&r->report);
-    else if (!plan_lengths(r, s, o) && !plan_field(r, s, o))
+    else if (!plan_lengths(r, s, o) && !rates_plan_field(r, s, o))
         r->planned = true;
     if (r->field && nevh_field_status(r->field))
         nevh__fail(&r->report, nevh_field_status(r->field), "%s",
@@ -136,7 +136,8 @@ static int slope_at(nevh_rates *r, double t, const double z[]) {
 
 /* column = J H'' d, all in units of the lengths, for a displacement of part
    `by` of d. */
-static int differentiate(nevh_rates *r, double t, const double d[], double by) {
+static int rates_differentiate(nevh_rates *r, double t, const double d[],
+                               double by) {
     size_t n = r->n, m = 2 * n;
     int status = NEVH_OK;
     memset(r->column, 0, m * sizeof *r->column);
@@ -154,10 +155,10 @@ static int differentiate(nevh_rates *r, double t, const double d[], double by) {
 }
 
 /* Nearer to an edge of H's domain with smaller displacements. */
-static int derivative(nevh_rates *r, double t, const double d[]) {
-    int status = differentiate(r, t, d, spread);
+static int rates_derivative(nevh_rates *r, double t, const double d[]) {
+    int status = rates_differentiate(r, t, d, spread);
     for (int i = 1; status == NEVH_EDOM && i < SHRINK; i++)
-        status = differentiate(r, t, d, ldexp(spread, -4 * i));
+        status = rates_differentiate(r, t, d, ldexp(spread, -4 * i));
     for (size_t i = 0; !status && i < 2 * r->n; i++)
         if (!isfinite(r->column[i]))
             status = NEVH_EDOM;
@@ -192,7 +193,7 @@ static int by_eigenvalues(nevh_rates *r, double t, double *frequency,
     for (size_t j = 0; j < m; j++) {
         memset(d, 0, m * sizeof *d);
         d[j] = 1;
-        int status = derivative(r, t, d);
+        int status = rates_derivative(r, t, d);
         if (status)
             return status;
         for (size_t i = 0; i < m; i++)
@@ -223,7 +224,7 @@ static int by_powers(nevh_rates *r, double t, double *frequency,
         d[i] = nevh__random(&random);
     double turn = 1;
     for (int k = 0; k < POWERS; k++) {
-        int status = derivative(r, t, d);
+        int status = rates_derivative(r, t, d);
         if (status)
             return status;
         double size = 0;

@@ -78,7 +78,7 @@ static void random_vector(trial *b, double length, double *to) {
         to[k * STATES] *= length / sqrt(square);
 }
 
-static bool sample(trial *b, const region *r) {
+static bool recognise_sample(trial *b, const region *r) {
     for (size_t i = 0; i < STATES; i++) {
         b->t[i] = random_between(b, b->t0, b->t1);
         random_vector(b, r->p * random_between(b, 0, 1), b->p + i);
@@ -208,7 +208,8 @@ static region oscillator_region(const trial *b, const nevh__exact_solution *e) {
     return (region){c, most, c - most, c + most, most / ratio};
 }
 
-static long double length(const trial *b, const double *v, size_t stride) {
+static long double recognise_length(const trial *b, const double *v,
+                                    size_t stride) {
     long double square = 0;
     for (size_t k = 0; k < b->n; k++)
         square += (long double)v[k * stride] * v[k * stride];
@@ -219,7 +220,7 @@ static long double length(const trial *b, const double *v, size_t stride) {
 static void fit_kepler(const trial *b, nevh__exact_solution *e) {
     e->b = 0;
     for (size_t i = 0; i < STATES; i++) {
-        long double r = length(b, b->q + i, STATES);
+        long double r = recognise_length(b, b->q + i, STATES);
         for (size_t k = 0; k < b->n; k++)
             e->b += r * b->q[k * STATES + i] * b->dq[k * STATES + i] / STATES;
     }
@@ -230,7 +231,8 @@ static bool kepler_fits(const trial *b, nevh__exact_solution *e,
     residual left = {0};
     (void)where;
     for (size_t i = 0; i < STATES; i++) {
-        long double r = length(b, b->q + i, STATES), force = e->b / (r * r);
+        long double r = recognise_length(b, b->q + i, STATES),
+                    force = e->b / (r * r);
         for (size_t k = 0; k < b->n; k++)
             add_residual(&left,
                          (double)(b->dq[k * STATES + i] -
@@ -271,12 +273,13 @@ static const struct {
     [NEVH__OSCILLATOR] = {fit_oscillator, oscillator_fits, oscillator_region},
     [NEVH__KEPLER] = {fit_kepler, kepler_fits, kepler_region}};
 
-static void fit(const trial *b, nevh__exact_solution *e) {
+static void recognise_fit(const trial *b, nevh__exact_solution *e) {
     fit_mass(b, e);
     kinds[e->kind].fit(b, e);
 }
 
-static bool fits(const trial *b, nevh__exact_solution *e, const region *r) {
+static bool recognise_fits(const trial *b, nevh__exact_solution *e,
+                           const region *r) {
     e->doubt = b->least_doubt;
     return mass_fits(b, e, r) && kinds[e->kind].fits(b, e, r);
 }
@@ -294,7 +297,8 @@ static double longest_step(const trial *b, bool momentum) {
 /* Lengths to begin with: of the start, or those that differences see. */
 static region first_region(const trial *b, const nevh__exact_solution *e) {
     double q0 = b->q0[0];
-    double r = (double)length(b, b->q0, 1), p = (double)length(b, b->p0, 1);
+    double r = (double)recognise_length(b, b->q0, 1),
+           p = (double)recognise_length(b, b->p0, 1);
     double half =
         e->kind == NEVH__PENDULUM ? PI : fmax(r, 64 * longest_step(b, false));
     p = fmax(p, 64 * longest_step(b, true));
@@ -338,7 +342,8 @@ static bool take_series(trial *b, NEVH__FINE(nevh__series_orbit) * orbit) {
 
 /* The constants with the digits of long double, at the states of the last pass;
    what there was stays where that cannot be. */
-static void refine(trial *b, nevh__exact_solution *e, const region *r) {
+static void recognise_refine(trial *b, nevh__exact_solution *e,
+                             const region *r) {
     static const double tolerance = 0.1;
     nevh__exact_solution finer = *e;
     NEVH__FINE(nevh__series_orbit) orbit = {0};
@@ -348,9 +353,9 @@ static void refine(trial *b, nevh__exact_solution *e, const region *r) {
     if (series &&
         NEVH__FINE(nevh__series_orbit_init)(&orbit, series, tolerance) &&
         take_series(b, &orbit)) {
-        fit(b, &finer);
+        recognise_fit(b, &finer);
         b->least_doubt = 0;
-        if (fits(b, &finer, r) && finer.doubt < e->doubt)
+        if (recognise_fits(b, &finer, r) && finer.doubt < e->doubt)
             *e = finer;
     }
     NEVH__FINE(nevh__series_orbit_clear)(&orbit);
@@ -360,16 +365,16 @@ static void refine(trial *b, nevh__exact_solution *e, const region *r) {
 static bool recognise(trial *b, nevh__exact_solution *e) {
     region r = first_region(b, e);
     for (int pass = 0; pass < PASSES; pass++) {
-        if (!is_usable(&r) || !sample(b, &r))
+        if (!is_usable(&r) || !recognise_sample(b, &r))
             return false;
-        fit(b, e);
+        recognise_fit(b, e);
         if (!(e->a > 0 && e->b > 0 && isfinite((double)e->a) &&
               isfinite((double)e->b)))
             return false;
         if (pass == PASSES - 1) {
-            bool found = fits(b, e, &r);
+            bool found = recognise_fits(b, e, &r);
             if (found)
-                refine(b, e, &r);
+                recognise_refine(b, e, &r);
             return found;
         }
         r = kinds[e->kind].region(b, e);
@@ -397,7 +402,7 @@ static bool try_kinds(trial *b, nevh__exact_solution *e) {
     return recognise(b, e);
 }
 
-static void divide(trial *b, double *memory, long double *gradient) {
+static void recognise_divide(trial *b, double *memory, long double *gradient) {
     b->t = memory;
     b->q = memory + STATES;
     b->p = b->q + b->n * STATES;
@@ -412,7 +417,7 @@ static int try_all(trial *b, nevh__exact_solution **exact) {
     nevh__exact_solution *e = nevh__array(1, sizeof *e);
     int status = memory && gradient && e ? NEVH_OK : NEVH_ENOMEM;
     if (!status)
-        divide(b, memory, gradient);
+        recognise_divide(b, memory, gradient);
     bool found = !status && try_kinds(b, e);
     if (found && e->kind == NEVH__KEPLER && !(e->solver = make_solver()))
         status = NEVH_ENOMEM;

@@ -22,7 +22,7 @@ void nevh__reference_widen(const nevh_reference *r, double low[], double high[],
 
 /* Variables of one kind share the widest range.  The first of them has no
    larger number than the others. */
-static void share(size_t n, const size_t kind[], double scale[]) {
+static void reference_share(size_t n, const size_t kind[], double scale[]) {
     for (size_t k = 0; k < n; k++)
         scale[kind[k]] = fmax(scale[kind[k]], scale[k]);
     for (size_t k = 0; k < n; k++)
@@ -40,7 +40,7 @@ static void scale_half(const nevh_reference *r, const double low[],
         widest = fmax(widest, scale[k]);
     }
     if (r->kind)
-        share(r->n, r->kind, scale);
+        reference_share(r->n, r->kind, scale);
     for (size_t k = 0; k < r->n; k++)
         if (scale[k] <= rounding * largest)
             scale[k] = widest > 0 ? widest : 1;
@@ -106,8 +106,8 @@ static int exact_ranges(nevh_reference *r) {
     return status;
 }
 
-static double distance(const nevh_reference *r, const double a[],
-                       const double b[]) {
+static double reference_distance(const nevh_reference *r, const double a[],
+                                 const double b[]) {
     double most = 0;
     for (size_t k = 0; k < 2 * r->n; k++)
         most = fmax(most, fabs(a[k] - b[k]) / r->range[k]);
@@ -149,7 +149,7 @@ static double doubted(const nevh_reference *r) {
         for (int constant = 0; constant < 3; constant++) {
             nevh__exact_solution other = spoiled(r, constant, part);
             if (known && !exact_state(r, &other, t, b))
-                sum += distance(r, a, b);
+                sum += reference_distance(r, a, b);
         }
         most = fmax(most, sum);
     }
@@ -236,7 +236,7 @@ static bool changes_with_time(const nevh_reference *r) {
            isfinite(nevh_timing_shortest(r->timing, NULL, NULL));
 }
 
-static int check(nevh_reference *r) {
+static int reference_check(nevh_reference *r) {
     int status = nevh_system_status(r->system);
     if (status)
         return nevh__fail(&r->report, status, "%s",
@@ -257,8 +257,8 @@ static int check(nevh_reference *r) {
     return NEVH_OK;
 }
 
-static int make(nevh_reference *r) {
-    int status = check(r);
+static int reference_make(nevh_reference *r) {
+    int status = reference_check(r);
     if (status)
         return status;
     if (!(nevh_system_traits(r->system) & NEVH_AUTONOMOUS)) {
@@ -284,7 +284,8 @@ static int make(nevh_reference *r) {
     return use_run(r);
 }
 
-static bool allocate(nevh_reference *r, const double q[], const double p[]) {
+static bool reference_allocate(nevh_reference *r, const double q[],
+                               const double p[]) {
     size_t n = r->n;
     r->start = nevh__array(12 * n, sizeof *r->start);
     r->state = nevh__array(2 * n, sizeof *r->state);
@@ -349,8 +350,8 @@ nevh_reference *nevh_reference_with(const nevh_system *s,
     r->integrator = o->integrator;
     fenv_t own; /* as in nevh_stepper_new */
     feholdexcept(&own);
-    bool made =
-        allocate(r, q, p) && take_kinds(r, o->kind) && make(r) != NEVH_ENOMEM;
+    bool made = reference_allocate(r, q, p) && take_kinds(r, o->kind) &&
+                reference_make(r) != NEVH_ENOMEM;
     fesetenv(&own);
     if (made)
         return r;
@@ -408,7 +409,7 @@ double nevh_reference_own_range(const nevh_reference *r, size_t k) {
 }
 
 /* Refuses a time outside, apart from its rounding. */
-static int check_time(nevh_reference *r, double elapsed) {
+static int reference_check_time(nevh_reference *r, double elapsed) {
     double forward = r->t1 > r->t0 ? 1 : -1, span = r->t1 - r->t0;
     double slack = 2 * DBL_EPSILON * fmax(fabs(r->t0), fabs(r->t1));
     if (!(elapsed * forward >= 0 && (elapsed - span) * forward <= slack))
@@ -431,7 +432,7 @@ int nevh__reference_find(nevh_reference *r, long double elapsed,
         return nevh_reference_status(r);
     r->report.status = NEVH_OK;
     r->report.text[0] = '\0';
-    int status = check_time(r, (double)elapsed);
+    int status = reference_check_time(r, (double)elapsed);
     if (status)
         return status;
     if (r->series) {

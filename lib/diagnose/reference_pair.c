@@ -10,7 +10,7 @@
 static const double separate = 0.1; /* that is not a beginning any more */
 static const double few = 16; /* steps, after which the motion has begun */
 
-static double spent_by(const nevh_stepper *s) {
+static double reference_pair_spent_by(const nevh_stepper *s) {
     nevh_counts c = nevh_stepper_counts(s);
     double gradients = (double)c.gradients;
     double values =
@@ -19,7 +19,8 @@ static double spent_by(const nevh_stepper *s) {
 }
 
 double nevh__pair_spent(const nevh__pair *b) {
-    return spent_by(b->coarse) + spent_by(b->fine);
+    return reference_pair_spent_by(b->coarse) +
+           reference_pair_spent_by(b->fine);
 }
 
 static bool orbit_grow(nevh__reference_orbit *k, size_t n) {
@@ -56,7 +57,7 @@ static int orbit_add(nevh__reference_orbit *k, size_t n, size_t step,
     return NEVH_OK;
 }
 
-static void begin(nevh__pair *b, double h) {
+static void reference_pair_begin(nevh__pair *b, double h) {
     const nevh_reference *r = b->reference;
     size_t size = 2 * r->n * sizeof(double);
     memcpy(b->a, r->start, size);
@@ -73,7 +74,7 @@ static void begin(nevh__pair *b, double h) {
 }
 
 /* The largest difference now, over the ranges so far. */
-static double compare(nevh__pair *b) {
+static double reference_pair_compare(nevh__pair *b) {
     const nevh_reference *r = b->reference;
     double most = 0;
     nevh__reference_widen(r, b->low, b->high, b->b);
@@ -94,7 +95,8 @@ static double largest_difference(const nevh__pair *b) {
     return most;
 }
 
-static int step(nevh_stepper *s, double t, double h, double state[]) {
+static int reference_pair_step(nevh_stepper *s, double t, double h,
+                               double state[]) {
     return nevh_stepper_apply(s, t, h, state, state + s->work.n);
 }
 
@@ -102,15 +104,15 @@ static int step(nevh_stepper *s, double t, double h, double state[]) {
 static int step_pair(nevh__pair *b, size_t i, double h) {
     const nevh_reference *r = b->reference;
     double t = r->t0 + (double)i * h, half = r->t0 + ((double)i + 0.5) * h;
-    int status = step(b->coarse, t, h, b->a);
+    int status = reference_pair_step(b->coarse, t, h, b->a);
     if (!status)
-        status = step(b->fine, t, h / 2, b->b);
+        status = reference_pair_step(b->fine, t, h / 2, b->b);
     if (!status)
         status = orbit_add(&b->orbit, r->n, 2 * i + 1, b->b);
     if (!status)
         nevh__reference_widen(r, b->low, b->high, b->b);
     if (!status)
-        status = step(b->fine, half, h / 2, b->b);
+        status = reference_pair_step(b->fine, half, h / 2, b->b);
     return status ? status : orbit_add(&b->orbit, r->n, 2 * i + 2, b->b);
 }
 
@@ -139,11 +141,12 @@ nevh__pair_outcome nevh__pair_run(nevh__pair *b, double h, double most) {
     double span = r->t1 - r->t0, steps = ceil(fabs(span / h) * (1 - 1e-12));
     nevh__pair_outcome o = {.h = span / steps};
     octave past = {0};
-    begin(b, o.h);
+    reference_pair_begin(b, o.h);
     o.status = orbit_add(&b->orbit, r->n, 0, b->b);
     for (double i = 0; !o.status && i < steps && nevh__pair_spent(b) < 1; i++) {
         o.status = step_pair(b, (size_t)i, o.h);
-        if (o.status || have_separated(&past, i + 1, compare(b), most))
+        if (o.status ||
+            have_separated(&past, i + 1, reference_pair_compare(b), most))
             break;
         o.stepped_over = !nevh__watch_step(&b->watch, b->a, b->b);
         if (o.stepped_over)
@@ -159,7 +162,7 @@ nevh__step_error nevh__pair_first_error(nevh__pair *b, double h) {
     const nevh_reference *r = b->reference;
     uint64_t newtons = nevh_stepper_counts(b->coarse).newtons;
     double error[2] = {0}, change[2] = {0}, size[2] = {0};
-    begin(b, h);
+    reference_pair_begin(b, h);
     if (step_pair(b, 0, h) || nevh_stepper_counts(b->coarse).newtons > newtons)
         return (nevh__step_error){INFINITY, INFINITY};
     for (size_t k = 0; k < 2 * r->n; k++) {

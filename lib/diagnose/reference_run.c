@@ -97,7 +97,7 @@ static int give_up(nevh__pair *b, const nevh__pair_outcome *o) {
 }
 
 /* The pair's fine orbit becomes the reference. */
-static void keep(nevh__pair *b, const nevh__pair_outcome *o) {
+static void reference_run_keep(nevh__pair *b, const nevh__pair_outcome *o) {
     nevh_reference *r = b->reference;
     size_t size = 2 * r->n * sizeof(double);
     nevh__reference_orbit old = r->orbit;
@@ -119,7 +119,7 @@ static void keep_part(nevh__pair *b, double h, nevh_reference_end why) {
     if (o.status || o.stepped_over || o.reached == 0 ||
         (!o.whole && nevh__pair_spent(b) >= 1))
         return;
-    keep(b, &o);
+    reference_run_keep(b, &o);
     r->exponent = o.whole ? NAN : r->exponent;
     r->growth = o.whole ? NAN : r->growth;
     if (o.whole)
@@ -238,7 +238,7 @@ static bool is_enough(nevh__pair *b, const nevh__pair_outcome *o, double cost,
     }
     bool floor = o->error > p->error / 8;
     if (o->error < p->error)
-        keep(b, o);
+        reference_run_keep(b, o);
     p->error = fmin(p->error, o->error);
     return floor || o->error <= target || (o->error <= fair && cost > little);
 }

@@ -72,7 +72,8 @@ static double bytes_of(const nevh_reference *r, double series) {
 
 /* The longest series.  A series detects a narrow part of H from about ten times its
    width; it must not pass one that the compared runs would find. */
-static double longest(const nevh_reference *r, const chain *c) {
+static double reference_series_longest(const nevh_reference *r,
+                                       const chain *c) {
     static const double steps = 8, fewest = 128;
     double span = fabs(r->t1 - r->t0);
     double most = fmin(most_work / work_of(c), MOST_KEPT / bytes_of(r, 1)) / 4;
@@ -80,7 +81,8 @@ static double longest(const nevh_reference *r, const chain *c) {
     return fmin(fmax(shortest, span / most), span / fewest);
 }
 
-static int plan(nevh_reference *r, chain *c, double tolerance) {
+static int reference_series_plan(nevh_reference *r, chain *c,
+                                 double tolerance) {
     bool damped = nevh_system_friction(r->system, c->rates);
     c->recurrence = nevh__recurrence_new(r->system, damped ? c->rates : NULL,
                                          r->timing, &r->report);
@@ -96,13 +98,13 @@ static int plan(nevh_reference *r, chain *c, double tolerance) {
     c->rows = 2 * r->n * (c->fine.order + 1);
     c->each = TIMES + c->rows;
     c->shown = nevh__array(c->rows, sizeof *c->shown);
-    c->fine.longest = c->coarse.longest = longest(r, c);
+    c->fine.longest = c->coarse.longest = reference_series_longest(r, c);
     c->fine.timing = c->coarse.timing = r->timing;
     c->fine.backward = c->coarse.backward = r->t1 < r->t0;
     return c->shown ? NEVH_OK : nevh__no_memory(&r->report);
 }
 
-static int start(nevh_reference *r, chain *c) {
+static int reference_series_start(nevh_reference *r, chain *c) {
     nevh__wide *state = nevh__array(2 * r->n, sizeof *state);
     if (!state)
         return nevh__no_memory(&r->report);
@@ -127,7 +129,7 @@ static void make_thin(const nevh_reference *r, chain *c) {
     c->thin = true;
 }
 
-static bool make_room(const nevh_reference *r, chain *c) {
+static bool reference_series_make_room(const nevh_reference *r, chain *c) {
     if (!c->thin && (c->count + 1) * c->each > MOST_KEPT / sizeof *c->kept)
         make_thin(r, c);
     if (c->count < c->capacity)
@@ -143,8 +145,8 @@ static bool make_room(const nevh_reference *r, chain *c) {
     return true;
 }
 
-static bool keep(const nevh_reference *r, chain *c) {
-    if (!make_room(r, c))
+static bool reference_series_keep(const nevh_reference *r, chain *c) {
+    if (!reference_series_make_room(r, c))
         return false;
     long double *to = c->kept + c->count * c->each;
     nevh__wide passed = c->fine.t - r->t0;
@@ -157,7 +159,8 @@ static bool keep(const nevh_reference *r, chain *c) {
 }
 
 /* The rows of one series. */
-static const long double *rows_of(const nevh_reference *r, chain *c, size_t i) {
+static const long double *reference_series_rows_of(const nevh_reference *r,
+                                                   chain *c, size_t i) {
     const long double *kept = c->kept + i * c->each;
     if (!c->thin)
         return kept + TIMES;
@@ -178,7 +181,7 @@ static void value_at(const nevh_reference *r, chain *c, size_t which,
                      long double elapsed, long double state[]) {
     size_t each = 2 * r->n, order = c->fine.order;
     const long double *kept = c->kept + which * c->each;
-    const long double *rows = rows_of(r, c, which);
+    const long double *rows = reference_series_rows_of(r, c, which);
     long double since = (elapsed - kept[0]) - kept[1];
     for (size_t i = 0; i < each; i++) {
         const long double *row = rows + order * each + i;
@@ -189,14 +192,15 @@ static void value_at(const nevh_reference *r, chain *c, size_t which,
     }
 }
 
-static void widen(nevh_reference *r, const long double state[]) {
+static void reference_series_widen(nevh_reference *r,
+                                   const long double state[]) {
     for (size_t k = 0; k < 2 * r->n; k++)
         r->walked[k] = (double)state[k];
     nevh__reference_widen(r, r->low, r->high, r->walked);
 }
 
 /* Extremes within the last series, as far as it is used. */
-static void look(nevh_reference *r, chain *c) {
+static void reference_series_look(nevh_reference *r, chain *c) {
     size_t last = c->count - 1;
     long double span = (long double)c->until - r->t0;
     long double step = copysignl((long double)c->fine.reach, span);
@@ -205,13 +209,13 @@ static void look(nevh_reference *r, chain *c) {
         if ((elapsed - span) * (span > 0 ? 1 : -1) > 0)
             elapsed = span;
         value_at(r, c, last, elapsed, c->value);
-        widen(r, c->value);
+        reference_series_widen(r, c->value);
     }
 }
 
 /* The largest difference of both, in ranges up to there; counted where they
    continue. */
-static double compare(nevh_reference *r, chain *c) {
+static double reference_series_compare(nevh_reference *r, chain *c) {
     const nevh__wide *state = c->fine.state; /* where the series begins */
     double most = 0;
     nevh__reference_scale(r, r->low, r->high, r->range);
@@ -250,23 +254,24 @@ static int part_at(nevh_reference *r, chain *c) {
 }
 
 /* Side by side, to the end or to where they part. */
-static int run(nevh_reference *r, chain *c) {
-    int status = keep(r, c) ? NEVH_OK : nevh__no_memory(&r->report);
+static int reference_series_run(nevh_reference *r, chain *c) {
+    int status =
+        reference_series_keep(r, c) ? NEVH_OK : nevh__no_memory(&r->report);
     double forward = c->until > r->t0 ? 1 : -1;
     if (!status)
-        look(r, c);
+        reference_series_look(r, c);
     while (!status && (c->until - c->fine.t) * forward > c->fine.reach) {
         status =
             NEVH__FINE(nevh__series_orbit_next)(&c->fine, c->until, &r->report);
         if (!status)
             status = NEVH__FINE(nevh__series_orbit_go)(&c->coarse, c->fine.t,
                                                        &r->report);
-        if (!status && !keep(r, c))
+        if (!status && !reference_series_keep(r, c))
             status = nevh__no_memory(&r->report);
         if (status)
             break;
-        look(r, c);
-        double by = c->parted[c->count - 1] = compare(r, c);
+        reference_series_look(r, c);
+        double by = c->parted[c->count - 1] = reference_series_compare(r, c);
         if (!affordable(r, c))
             return nevh__fail(&r->report, NEVH_EFAILED,
                               "Taylor series cost too much for a reference "
@@ -282,7 +287,7 @@ static int run(nevh_reference *r, chain *c) {
         status =
             NEVH__FINE(nevh__series_orbit_go)(&c->fine, c->until, &r->report);
     if (!status)
-        compare(r, c);
+        reference_series_compare(r, c);
     return status;
 }
 
@@ -296,7 +301,7 @@ static void find_end(nevh_reference *r, double t) {
                    t);
 }
 
-static bool allocate(const nevh_reference *r, chain *c) {
+static bool reference_series_allocate(const nevh_reference *r, chain *c) {
     c->rates = nevh__array(r->n, sizeof *c->rates);
     c->value = nevh__array(2 * r->n, sizeof *c->value);
     c->difference = nevh__array(2 * r->n, sizeof *c->difference);
@@ -309,7 +314,7 @@ static chain *chain_new(nevh_reference *r, double tolerance,
                         const chain *first) {
     bool parted = first && first->parts;
     chain *c = nevh__array(1, sizeof *c);
-    if (!c || !allocate(r, c)) {
+    if (!c || !reference_series_allocate(r, c)) {
         nevh__reference_series_free(c);
         nevh__no_memory(&r->report);
         return NULL;
@@ -317,11 +322,11 @@ static chain *chain_new(nevh_reference *r, double tolerance,
     c->until = parted ? first->until : r->t1;
     c->limit = parted ? nevh__reference_wanted / certain : apart;
     c->foreseen = first ? (double)first->count : 0;
-    int status = plan(r, c, tolerance);
+    int status = reference_series_plan(r, c, tolerance);
     if (!status)
-        status = start(r, c);
+        status = reference_series_start(r, c);
     if (!status)
-        status = run(r, c);
+        status = reference_series_run(r, c);
     if (!status)
         return c;
     if (c->fine.ended || c->coarse.ended)
@@ -364,7 +369,7 @@ static void end_at(nevh_reference *r, const chain *c) {
 /* Tolerances that make up for what the orbit does to differences, as far as the
    numbers have digits; where runs have parted, to where they did and no further
    than the error is as wanted. */
-static void refine(nevh_reference *r) {
+static void reference_series_refine(nevh_reference *r) {
     double finest = ldexp(1, -NEVH__FINE_BITS);
     double error = error_of(r, r->series);
     double tolerance =
@@ -380,7 +385,7 @@ static void refine(nevh_reference *r) {
         r->horizon = c->until;
 }
 
-static void describe(nevh_reference *r, bool dear) {
+static void reference_series_describe(nevh_reference *r, bool dear) {
     nevh__reference_scale(r, r->low, r->high, r->range);
     r->error = error_of(r, r->series);
     const char *why = dear
@@ -407,13 +412,13 @@ int nevh__reference_series(nevh_reference *r) {
     if (r->series && r->series->parts)
         end_at(r, r->series);
     if (r->series)
-        refine(r);
+        reference_series_refine(r);
     if (!r->series || r->report.status == NEVH_ENOMEM) {
         memcpy(r->low, r->start, 2 * r->n * sizeof *r->low);
         memcpy(r->high, r->start, 2 * r->n * sizeof *r->high);
         return r->report.status;
     }
-    describe(r, r->report.status == NEVH_EFAILED);
+    reference_series_describe(r, r->report.status == NEVH_EFAILED);
     r->report = (nevh__report){0};
     r->integrator = nevh_taylor;
     return NEVH_OK;

@@ -42,7 +42,7 @@ static uint64_t key_of(double t) {
 }
 
 /* The slot of a time, or a free one for it. */
-static size_t slot_of(const nevh__memo *m, uint64_t key) {
+static size_t reference_walk_slot_of(const nevh__memo *m, uint64_t key) {
     size_t i = (size_t)((key * 0x9e3779b97f4a7c15u) >> 32) & (m->slots - 1);
     while (m->keys[i] && m->keys[i] != key)
         i = (i + 1) & (m->slots - 1);
@@ -51,7 +51,7 @@ static size_t slot_of(const nevh__memo *m, uint64_t key) {
 
 static const double *recall(const nevh_reference *r, double t) {
     const nevh__memo *m = &r->memo;
-    size_t i = slot_of(m, key_of(t));
+    size_t i = reference_walk_slot_of(m, key_of(t));
     return m->keys[i] ? m->states + 2 * r->n * i : NULL;
 }
 
@@ -62,7 +62,7 @@ static void remember(nevh_reference *r, double t, const double q[],
         memset(m->keys, 0, m->slots * sizeof *m->keys);
         m->used = 1;
     }
-    size_t i = slot_of(m, key_of(t));
+    size_t i = reference_walk_slot_of(m, key_of(t));
     m->keys[i] = key_of(t);
     memcpy(m->states + 2 * r->n * i, q, r->n * sizeof *q);
     memcpy(m->states + (2 * i + 1) * r->n, p, r->n * sizeof *p);
@@ -78,8 +78,9 @@ static int open_walk(nevh_reference *r) {
     return NEVH_OK;
 }
 
-static int take_step(nevh_reference *r, nevh_stepper *s, double t, double h,
-                     double q[], double p[]) {
+static int reference_walk_take_step(nevh_reference *r, nevh_stepper *s,
+                                    double t, double h, double q[],
+                                    double p[]) {
     int status = nevh_stepper_apply(s, t, h, q, p);
     if (!status)
         return NEVH_OK;
@@ -101,8 +102,9 @@ static int walk_to(nevh_reference *r, size_t steps) {
     }
     int status = NEVH_OK;
     for (; !status && r->steps < steps; r->steps += !status)
-        status = take_step(r, r->walker, r->t0 + (double)r->steps * k->h, k->h,
-                           r->walked, r->walked + r->n);
+        status = reference_walk_take_step(r, r->walker,
+                                          r->t0 + (double)r->steps * k->h, k->h,
+                                          r->walked, r->walked + r->n);
     r->walking = !status;
     return status;
 }
@@ -119,7 +121,8 @@ static int find_state(nevh_reference *r, double elapsed, double q[],
     if (remainder == 0)
         return NEVH_OK;
     nevh_stepper_reset(r->branch);
-    return take_step(r, r->branch, r->t0 + steps * h, remainder, q, p);
+    return reference_walk_take_step(r, r->branch, r->t0 + steps * h, remainder,
+                                    q, p);
 }
 
 int nevh__reference_walk(nevh_reference *r, double elapsed, double q[],

@@ -45,7 +45,8 @@ void nevh__watch_clear(nevh__watch *w) {
 
 /* H without constants, and the sum of its terms' sizes; NAN where it has no
    value. */
-static long double value(nevh__watch *w, const double z[], double *size) {
+static long double reference_watch_value(nevh__watch *w, const double z[],
+                                         double *size) {
     double h = NAN, roundoff = 0;
     if (nevh__field_moving_values(w->field, 1, &w->t0, z, z + w->n, &h,
                                   &roundoff, size))
@@ -59,7 +60,7 @@ void nevh__watch_begin(nevh__watch *w) {
     if (!w->field)
         return;
     memcpy(w->before, w->start, 2 * w->n * sizeof *w->before);
-    w->h0 = value(w, w->start, &w->size);
+    w->h0 = reference_watch_value(w, w->start, &w->size);
 }
 
 static const double *between(nevh__watch *w, const double after[],
@@ -92,12 +93,13 @@ static size_t find_effect(nevh__watch *w, const double after[], double low,
 static void find_jump(nevh__watch *w, const double after[], double allowed) {
     static const double part = 0.25;
     double low = 0, high = 1, size;
-    long double h_low = value(w, between(w, after, 0), &size);
-    long double h_high = value(w, between(w, after, 1), &size);
+    long double h_low = reference_watch_value(w, between(w, after, 0), &size);
+    long double h_high = reference_watch_value(w, between(w, after, 1), &size);
     long double all = fabsl(h_high - h_low);
     for (int i = 0; i < HALVINGS; i++) {
         double middle = (low + high) / 2;
-        long double h = value(w, between(w, after, middle), &size);
+        long double h =
+            reference_watch_value(w, between(w, after, middle), &size);
         bool lower = fabsl(h - h_low) > fabsl(h_high - h);
         *(lower ? &high : &low) = middle;
         *(lower ? &h_high : &h_low) = h;
@@ -115,12 +117,13 @@ static void find_jump(nevh__watch *w, const double after[], double allowed) {
 static double find_rounding(nevh__watch *w, const double z[]) {
     double sum = 0, size;
     memcpy(w->between, z, 2 * w->n * sizeof *z);
-    long double h = value(w, w->between, &size);
+    long double h = reference_watch_value(w, w->between, &size);
     for (size_t k = 0; k < 2 * w->n; k++) {
         double kept = w->between[k], most = 0;
         for (int side = -1; side <= 1; side += 2) {
             w->between[k] = nextafter(kept, side * HUGE_VAL);
-            double change = (double)fabsl(value(w, w->between, &size) - h);
+            double change =
+                (double)fabsl(reference_watch_value(w, w->between, &size) - h);
             most = fmax(most, change); /* that is not NaN */
         }
         w->between[k] = kept;
@@ -134,7 +137,8 @@ bool nevh__watch_step(nevh__watch *w, const double coarse[],
     double size = 0;
     if (!w->field)
         return true;
-    long double a = value(w, coarse, &size), b = value(w, fine, &size);
+    long double a = reference_watch_value(w, coarse, &size),
+                b = reference_watch_value(w, fine, &size);
     double change = (double)fabsl(b - w->h0);
     w->size = fmax(w->size, size);
     w->apart = fmax(w->apart, (double)fabsl(a - b));

@@ -49,7 +49,7 @@ void nevh_spectral_samples_restart(nevh_spectral_samples *s) {
 }
 
 /* The spectrum with the window (1 + cos(pi x))^3, without the mean. */
-static void transform(nevh_spectral_samples *s) {
+static void samples_transform(nevh_spectral_samples *s) {
     double mean = 0, last = (double)(s->count - 1);
     for (size_t k = 0; k < s->count; k++)
         mean += s->values[k] / (double)s->count;
@@ -65,7 +65,7 @@ static void transform(nevh_spectral_samples *s) {
 static bool are_dense(nevh_spectral_samples *s) {
     static const double nothing = 1e-6; /* of the largest line */
     double slow = 0, fast = 0;
-    transform(s);
+    samples_transform(s);
     for (size_t j = 1; j < s->size / 2; j++) {
         double size = hypot(s->power[j], s->power[s->size - j]);
         double *most = j < s->size / 4 ? &slow : &fast;
@@ -74,7 +74,7 @@ static bool are_dense(nevh_spectral_samples *s) {
     return fast <= nothing * slow;
 }
 
-static void make_room(nevh_spectral_samples *s) {
+static void samples_make_room(nevh_spectral_samples *s) {
     s->full = !are_dense(s);
     if (s->full)
         return;
@@ -104,7 +104,7 @@ void nevh_spectral_samples_take(nevh_spectral_samples *s, size_t step, double t,
     s->values[s->count++] = x;
     s->last_t = t;
     if (s->count == s->room)
-        make_room(s);
+        samples_make_room(s);
 }
 
 static bool goes_round(const nevh_spectral_samples *s, double period) {

@@ -128,8 +128,8 @@ static nevh_verdict judge_own(const nevh_energy_report *own,
     return line ? NEVH_DRIFTS : NEVH_UNDECIDED;
 }
 
-static int ask(void *data, size_t step, double t, const double q[],
-               const double p[]) {
+static int settle_ask(void *data, size_t step, double t, const double q[],
+                      const double p[]) {
     longer_run *l = data;
     int status = nevh_energy_observe(l->energy, step, t, q, p);
     if (status || fabs(t - l->start) < l->times * fabs(l->span) * (1 - 1e-9))
@@ -167,8 +167,8 @@ static double confirming(const nevh_judged_run *r) {
 }
 
 /* From the start, since the orbit is the same again. */
-static int run(const nevh_judged_run *r, nevh_stepper *s, longer_run *l,
-               double times) {
+static int settle_run(const nevh_judged_run *r, nevh_stepper *s, longer_run *l,
+                      double times) {
     size_t bytes = s->work.n * sizeof *r->q;
     nevh_observer *all = malloc((r->stops + 1) * sizeof *all);
     double *q = malloc(bytes), *p = malloc(bytes);
@@ -176,7 +176,7 @@ static int run(const nevh_judged_run *r, nevh_stepper *s, longer_run *l,
     if (all && q && p) {
         memcpy(q, r->q, bytes);
         memcpy(p, r->p, bytes);
-        all[0] = (nevh_observer){ask, l, 1};
+        all[0] = (nevh_observer){settle_ask, l, 1};
         if (r->stops)
             memcpy(all + 1, r->stop, r->stops * sizeof *all);
         nevh_stepper_reset(s);
@@ -190,7 +190,7 @@ static int run(const nevh_judged_run *r, nevh_stepper *s, longer_run *l,
 }
 
 /* Judges a run that is still open by as much as was run. */
-static void end(longer_run *l, int status) {
+static void settle_end(longer_run *l, int status) {
     nevh_energy_report *r = &l->report;
     if (l->decided)
         return;
@@ -273,10 +273,10 @@ int nevh_verdict_settle(nevh_stepper *s, nevh_energy *energy,
                     .enough = enough,
                     .own = report->max,
                     .report.verdict = NEVH_UNDECIDED};
-    int status = run(r, s, &l, times);
+    int status = settle_run(r, s, &l, times);
     if (status == NEVH_ENOMEM)
         return status;
-    end(&l, status);
+    settle_end(&l, status);
     l.report.verdict = judge_longer(report, &l, status);
     *report = l.report;
     return NEVH_OK;

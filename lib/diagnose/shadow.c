@@ -55,8 +55,8 @@ static const series *series_of(const nevh_integrator *scheme) {
     return NULL;
 }
 
-static int check(nevh_shadow *s, const nevh_system *system,
-                 const nevh_integrator *scheme, const nevh_options *o) {
+static int shadow_check(nevh_shadow *s, const nevh_system *system,
+                        const nevh_integrator *scheme, const nevh_options *o) {
     if (!scheme)
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "the integrator is NULL: is its name spelt right?");
@@ -90,8 +90,8 @@ static const char *timed_effect(const nevh_system *s) {
 }
 
 /* A function in C may read t by its declaration alone. */
-static int check_time(nevh_shadow *s, const nevh_system *system,
-                      const nevh_probe *probe) {
+static int shadow_check_time(nevh_shadow *s, const nevh_system *system,
+                             const nevh_probe *probe) {
     if (nevh_system_traits(system) & NEVH_AUTONOMOUS ||
         nevh_probe_finding(probe, NEVH_IS_AUTONOMOUS).holds)
         return NEVH_OK;
@@ -111,14 +111,14 @@ static int plan_probe(nevh_shadow *s, const nevh_system *system,
     else {
         memcpy(s->scale, o->scale ? o->scale : nevh_probe_lengths(probe),
                2 * s->n * sizeof *s->scale);
-        status = check_time(s, system, probe);
+        status = shadow_check_time(s, system, probe);
     }
     nevh_probe_free(probe);
     return status;
 }
 
-static nevh_field *plan_field(nevh_shadow *s, const nevh_system *system,
-                              const nevh_options *o) {
+static nevh_field *shadow_plan_field(nevh_shadow *s, const nevh_system *system,
+                                     const nevh_options *o) {
     nevh_field *field = nevh_field_new(system, o);
     if (nevh_field_status(field))
         nevh__fail(&s->report, nevh_field_status(field), "%s",
@@ -126,8 +126,8 @@ static nevh_field *plan_field(nevh_shadow *s, const nevh_system *system,
     return field;
 }
 
-static int plan(nevh_shadow *s, const nevh_system *system,
-                const nevh_options *o) {
+static int shadow_plan(nevh_shadow *s, const nevh_system *system,
+                       const nevh_options *o) {
     size_t size = 2 * s->n;
     s->zq = nevh__array(size * (4 * LANES + 1), sizeof *s->zq);
     if (!s->zq)
@@ -140,15 +140,15 @@ static int plan(nevh_shadow *s, const nevh_system *system,
     if (!status) {
         nevh_options values = {.gradient = &nevh__no_gradient,
                                .portable = o->portable};
-        s->field = plan_field(s, system, &values);
+        s->field = shadow_plan_field(s, system, &values);
         s->variational = nevh__variational_new(system, s->scale, &s->report);
         status = s->report.status;
     }
     if (!status)
-        s->along = plan_field(s, s->variational->system,
-                              &(nevh_options){.gradient = nevh_exact,
-                                              .width = LANES,
-                                              .portable = o->portable});
+        s->along = shadow_plan_field(s, s->variational->system,
+                                     &(nevh_options){.gradient = nevh_exact,
+                                                     .width = LANES,
+                                                     .portable = o->portable});
     return s->report.status;
 }
 
@@ -166,9 +166,9 @@ nevh_shadow *nevh_shadow_new(const nevh_system *system,
     if (status)
         nevh__fail_as(&s->report, &system->report);
     else
-        status = check(s, system, scheme, o);
+        status = shadow_check(s, system, scheme, o);
     if (!status)
-        status = plan(s, system, o);
+        status = shadow_plan(s, system, o);
     s->planned = !status;
     return s;
 }
@@ -191,7 +191,7 @@ int nevh_shadow_order(const nevh_shadow *s) {
 
 /* The gradient of K, so many states side by side: coordinates are q and dq,
    momenta dp and p. */
-static int slopes(nevh_shadow *s, size_t lanes) {
+static int shadow_slopes(nevh_shadow *s, size_t lanes) {
     static const double t[LANES];
     int status =
         nevh_field_gradient(s->along, lanes, t, s->zq, s->zp, s->gq, s->gp);
@@ -208,7 +208,7 @@ static int take_slopes(nevh_shadow *s, const double q[], const double p[]) {
     memset(s->zp, 0, 2 * n * LANES * sizeof *s->zp);
     memcpy(s->zq, q, n * sizeof *q);
     memcpy(s->zp + n, p, n * sizeof *p);
-    int status = slopes(s, 1);
+    int status = shadow_slopes(s, 1);
     for (size_t k = 0; k < n; k++)
         for (size_t lane = 0; lane < LANES; lane++) {
             s->zq[k * LANES + lane] = q[k];
@@ -226,7 +226,7 @@ static int correct(nevh_shadow *s, const double q[], const double p[],
     double d = 0, a = 0, b = 0, c = 0;
     int status = take_slopes(s, q, p);
     if (!status)
-        status = slopes(s, LANES);
+        status = shadow_slopes(s, LANES);
     for (size_t k = 0; k < n; k++) {
         double hp = s->zq[(n + k) * LANES + ALONG_Q];
         double hq = s->zp[k * LANES + ALONG_P];

@@ -20,9 +20,9 @@ static double *row_of(const nevh__spectrum *a, size_t i) {
 }
 
 /* Turns `count` cosines and sines by one angle. */
-NEVH_SIMD static void turn(size_t count, double angle, const double by_c[],
-                           const double by_s[], double cosine[],
-                           double sine[]) {
+NEVH_SIMD static void spectrum_turn(size_t count, double angle,
+                                    const double by_c[], const double by_s[],
+                                    double cosine[], double sine[]) {
     double c = cos(angle), s = sin(angle);
     NEVH_LANES(i, count) {
         cosine[i] = c * by_c[i] - s * by_s[i];
@@ -41,12 +41,13 @@ static void find_wave(const nevh__spectrum *a, double w, double cosine[],
     }
     for (size_t size = NEVH__LANES; size < a->padded; size *= 8)
         for (size_t at = size; at < 8 * size && at < a->padded; at += size)
-            turn(a->padded - at < size ? a->padded - at : size,
-                 w * ((double)at * h), cosine, sine, cosine + at, sine + at);
+            spectrum_turn(a->padded - at < size ? a->padded - at : size,
+                          w * ((double)at * h), cosine, sine, cosine + at,
+                          sine + at);
 }
 
-NEVH_SIMD static void multiply(size_t count, const double x[], const double y[],
-                               double product[]) {
+NEVH_SIMD static void spectrum_multiply(size_t count, const double x[],
+                                        const double y[], double product[]) {
     NEVH_LANES(i, count) {
         product[i] = x[i] * y[i];
     }
@@ -61,7 +62,8 @@ NEVH_SIMD static void add_times(size_t count, double factor, const double x[],
 }
 
 /* Sums that do not wait for one another. */
-NEVH_SIMD static double dot(size_t count, const double x[], const double y[]) {
+NEVH_SIMD static double spectrum_dot(size_t count, const double x[],
+                                     const double y[]) {
     nevh__vector sum[ROW / NEVH__IN_VECTOR] = {{0}};
     double parts[ROW], all = 0;
     for (size_t k = 0; k < count; k += ROW)
@@ -91,15 +93,17 @@ void nevh__spectrum_window(nevh__spectrum *a, int order) {
 }
 
 /* The transform of the rest at w, and half the slope of its square. */
-static double transform(const nevh__spectrum *a, double w, double *slope) {
+static double spectrum_transform(const nevh__spectrum *a, double w,
+                                 double *slope) {
     double *weighted = row_of(a, 3 * a->lines + 1), *c = weighted + a->padded,
            *s = c + a->padded;
     find_wave(a, w, c, s);
-    multiply(a->padded, a->window, a->rest, weighted);
-    double re = dot(a->padded, weighted, c), im = -dot(a->padded, weighted, s);
-    multiply(a->padded, weighted, a->time, weighted);
-    double dre = -dot(a->padded, weighted, s);
-    double dim = -dot(a->padded, weighted, c);
+    spectrum_multiply(a->padded, a->window, a->rest, weighted);
+    double re = spectrum_dot(a->padded, weighted, c),
+           im = -spectrum_dot(a->padded, weighted, s);
+    spectrum_multiply(a->padded, weighted, a->time, weighted);
+    double dre = -spectrum_dot(a->padded, weighted, s);
+    double dim = -spectrum_dot(a->padded, weighted, c);
     *slope = re * dre + im * dim;
     return re * re + im * im;
 }
@@ -108,8 +112,8 @@ static double transform(const nevh__spectrum *a, double w, double *slope) {
    there. NAN if it does not fall from one to the other. */
 double nevh__spectrum_peak(const nevh__spectrum *a, double low, double high) {
     double at_low, at_high, at_middle;
-    transform(a, low, &at_low);
-    transform(a, high, &at_high);
+    spectrum_transform(a, low, &at_low);
+    spectrum_transform(a, high, &at_high);
     if (!(at_low > 0 && at_high < 0))
         return NAN;
     int side = 0;
@@ -118,7 +122,7 @@ double nevh__spectrum_peak(const nevh__spectrum *a, double low, double high) {
         w = (low * at_high - high * at_low) / (at_high - at_low);
         if (!(w > low && w < high) || i % 3 == 2)
             w = (low + high) / 2;
-        transform(a, w, &at_middle);
+        spectrum_transform(a, w, &at_middle);
         if (at_middle == 0)
             break;
         if (at_middle > 0) {
@@ -136,7 +140,8 @@ double nevh__spectrum_peak(const nevh__spectrum *a, double low, double high) {
     return w;
 }
 
-static double refine(const nevh__spectrum *a, double low, double high) {
+static double spectrum_refine(const nevh__spectrum *a, double low,
+                              double high) {
     double w = nevh__spectrum_peak(a, low, high);
     return isnan(w) ? (low + high) / 2 : w;
 }
@@ -147,7 +152,7 @@ double nevh__spectrum_resolution(const nevh__spectrum *a) {
 }
 
 /* The largest of the transform. */
-static double search(nevh__spectrum *a) {
+static double spectrum_search(nevh__spectrum *a) {
     memset(a->power, 0, a->size * sizeof *a->power);
     for (size_t k = 0; k < a->count; k++)
         a->power[k] = a->window[k] * a->rest[k];
@@ -162,7 +167,7 @@ static double search(nevh__spectrum *a) {
         }
     }
     double unit = 2 * pi / ((double)a->size * h), w = unit * (double)best;
-    return refine(a, fmax(w - unit, unit / 8), w + unit);
+    return spectrum_refine(a, fmax(w - unit, unit / 8), w + unit);
 }
 
 /* The residual of all lines but `but`. */
@@ -192,14 +197,14 @@ static void find_basis(const nevh__spectrum *a, size_t n) {
         memset(move, 0, padded * sizeof *move);
         add_times(padded, a->sine[i] / a->half, c, move);
         add_times(padded, -a->cosine[i] / a->half, s, move);
-        multiply(padded, a->time, move, move);
+        spectrum_multiply(padded, a->time, move, move);
     }
 }
 
 /* Solves m x = b, m symmetric and not negative, by Cholesky's factors; b becomes x.
    An unknown that depends on those before it is left at 0, where GSL's solvers would
    call its error handler, which aborts. */
-static void solve(double m[], double b[], size_t n) {
+static void spectrum_solve(double m[], double b[], size_t n) {
     static const double dependent = 1e-14;
     for (size_t j = 0; j < n; j++) {
         double *row = m + j * n, own = row[j];
@@ -222,7 +227,7 @@ static void solve(double m[], double b[], size_t n) {
 
 /* Mean, cosines and sines by least squares under the window; with `moves`,
    together with changes of frequencies to first order, which are in it then. */
-static bool fit(nevh__spectrum *a, double moves[]) {
+static bool spectrum_fit(nevh__spectrum *a, double moves[]) {
     size_t n = (moves ? 3 : 2) * a->lines + 1;
     double *m = nevh__array(n * n + n, sizeof *m);
     if (!m)
@@ -230,12 +235,12 @@ static bool fit(nevh__spectrum *a, double moves[]) {
     double *b = m + n * n, *part = row_of(a, n);
     find_basis(a, n);
     for (size_t i = 0; i < n; i++) {
-        multiply(a->padded, a->window, row_of(a, i), part);
-        b[i] = dot(a->padded, part, a->values);
+        spectrum_multiply(a->padded, a->window, row_of(a, i), part);
+        b[i] = spectrum_dot(a->padded, part, a->values);
         for (size_t j = 0; j <= i; j++)
-            m[i * n + j] = dot(a->padded, part, row_of(a, j));
+            m[i * n + j] = spectrum_dot(a->padded, part, row_of(a, j));
     }
-    solve(m, b, n);
+    spectrum_solve(m, b, n);
     a->mean = b[0];
     for (size_t i = 0; i < a->lines; i++) {
         a->cosine[i] = b[2 * i + 1];
@@ -258,7 +263,7 @@ static bool refine_all(nevh__spectrum *a) {
     double before = nevh__spectrum_resolution(a);
     for (int i = 0; i < ROUNDS; i++) {
         double most = 0, part = 0;
-        if (!fit(a, a->move))
+        if (!spectrum_fit(a, a->move))
             return false;
         for (size_t k = 0; k < a->lines; k++) {
             most = fmax(most, fabs(a->move[k]));
@@ -273,7 +278,7 @@ static bool refine_all(nevh__spectrum *a) {
             break;
         before = slower * most;
     }
-    return fit(a, NULL);
+    return spectrum_fit(a, NULL);
 }
 
 /* The line that came last is left out again where it and another are one. */
@@ -290,14 +295,14 @@ static bool add_line(nevh__spectrum *a, double w, bool *split) {
     size_t bytes = a->lines * sizeof *a->w;
     memcpy(a->before, a->w, bytes);
     a->w[a->lines++] = w;
-    if (!fit(a, NULL) || !refine_all(a))
+    if (!spectrum_fit(a, NULL) || !refine_all(a))
         return false;
     *split = split_line(a);
     if (!*split)
         return true;
     a->lines--;
     memcpy(a->w, a->before, bytes);
-    return fit(a, NULL) && refine_all(a);
+    return spectrum_fit(a, NULL) && refine_all(a);
 }
 
 static double largest_rest(const nevh__spectrum *a) {
@@ -322,13 +327,13 @@ bool nevh__spectrum_find_lines(nevh__spectrum *a, size_t most) {
     for (size_t k = 0; k < a->count; k++)
         largest = fmax(largest, fabs(a->values[k]));
     nevh__spectrum_window(a, ORDER);
-    if (!fit(a, NULL))
+    if (!spectrum_fit(a, NULL))
         return false;
     while (a->lines < most) {
         nevh__spectrum_take_off(a, a->lines);
         if (!(largest_rest(a) > nothing * largest))
             break;
-        double w = search(a);
+        double w = spectrum_search(a);
         if (is_double(a, w))
             break;
         if (!add_line(a, w, &split))

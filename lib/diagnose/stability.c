@@ -62,7 +62,7 @@ static nevh_system *new_system(void) {
     return s;
 }
 
-static oscillator begin(const nevh_integrator *scheme) {
+static oscillator stability_begin(const nevh_integrator *scheme) {
     static const double q[2] = {1, 0}, p[2] = {0, 1};
     nevh_options options = {.gradient = nevh_exact, .width = 2, .q = q, .p = p};
     nevh_system *s = new_system();
@@ -72,7 +72,7 @@ static oscillator begin(const nevh_integrator *scheme) {
                         scheme->multistep, keeps ? growing_kept : growing_lost};
 }
 
-static void end(const oscillator *o) {
+static void stability_end(const oscillator *o) {
     nevh_stepper_free(o->stepper);
     nevh_system_free(o->system);
 }
@@ -109,7 +109,7 @@ static bool take_matrix(const oscillator *o, double x, double q[2],
 }
 
 /* The spectral radius of a step of x, less 1; INFINITY where no step is. */
-static double excess(const oscillator *o, double x) {
+static double stability_excess(const oscillator *o, double x) {
     double q[2], p[2];
     if (!take_matrix(o, x, q, p))
         return INFINITY;
@@ -124,7 +124,7 @@ static double excess(const oscillator *o, double x) {
 
 /* Half the trace's distance to 1 from below, which the tips of narrow unstable
    windows between points of the grid reach through. */
-static double closeness(const oscillator *o, double x) {
+static double stability_closeness(const oscillator *o, double x) {
     double q[2], p[2];
     if (!take_matrix(o, x, q, p))
         return INFINITY;
@@ -135,7 +135,7 @@ static double closeness(const oscillator *o, double x) {
 static double tip(const oscillator *o, double a, double b) {
     for (int i = 0; i < 60; i++) {
         double c = a + (b - a) / 3, d = b - (b - a) / 3;
-        if (closeness(o, c) > closeness(o, d))
+        if (stability_closeness(o, c) > stability_closeness(o, d))
             b = d;
         else
             a = c;
@@ -148,7 +148,7 @@ static double bisect(const oscillator *o, double a, double b) {
     enum { HALVINGS = 64 };
     for (int i = 0; i < HALVINGS && b - a > 1e-9 * b; i++) {
         double middle = (a + b) / 2;
-        if (excess(o, middle) > o->growing)
+        if (stability_excess(o, middle) > o->growing)
             b = middle;
         else
             a = middle;
@@ -160,19 +160,19 @@ static double bisect(const oscillator *o, double a, double b) {
    has some: beyond a limit it grows far faster. */
 static bool grows_from_nothing(const oscillator *o, double x) {
     static const double beyond = 1.1, faster = 10; /* above its 20th power */
-    return excess(o, beyond * x) < faster * o->growing;
+    return stability_excess(o, beyond * x) < faster * o->growing;
 }
 
-static double search(const oscillator *o) {
+static double stability_search(const oscillator *o) {
     double before[2] = {-1, -1};
     for (double x = spacing; x <= farthest; x += spacing) {
-        double near = closeness(o, x);
-        if (excess(o, x) > o->growing)
+        double near = stability_closeness(o, x);
+        if (stability_excess(o, x) > o->growing)
             return bisect(o, x - spacing, x);
         if (o->symplectic && before[1] > -0.1 && before[1] >= before[0] &&
             before[1] >= near) {
             double top = tip(o, x - 2 * spacing, x);
-            if (excess(o, top) > o->growing)
+            if (stability_excess(o, top) > o->growing)
                 return bisect(o, x - 2 * spacing, top);
         }
         before[0] = before[1];
@@ -182,7 +182,7 @@ static double search(const oscillator *o) {
 }
 
 /* For methods with a space of their own: the largest point of an orbit in it. */
-static double longest(const oscillator *o, double x) {
+static double stability_longest(const oscillator *o, double x) {
     enum { STEPS = 500 };
     double q[2] = {1, 0}, p[2] = {0, 1}, most = 0;
     nevh_stepper_reset(o->stepper);
@@ -196,7 +196,7 @@ static double longest(const oscillator *o, double x) {
 
 static double search_extended(const oscillator *o) {
     for (double x = 2 * spacing; x <= 2; x += 2 * spacing)
-        if (longest(o, x) >= 100)
+        if (stability_longest(o, x) >= 100)
             return x - 2 * spacing;
     return INFINITY;
 }
@@ -214,23 +214,24 @@ double nevh_stability_limit(const nevh_integrator *scheme) {
                     !nevh_integrator_own_time(scheme);
     if (!extended && !is_linear(scheme))
         return NAN;
-    oscillator o = begin(scheme);
+    oscillator o = stability_begin(scheme);
     double limit = nevh_stepper_status(o.stepper) ? NAN
                    : extended                     ? search_extended(&o)
-                                                  : search(&o);
+                                                  : stability_search(&o);
     if (is_linear(scheme) && isfinite(limit) && !o.symplectic &&
         grows_from_nothing(&o, limit))
         limit = 0;
-    end(&o);
+    stability_end(&o);
     return limit;
 }
 
 double nevh_stability_growth(const nevh_integrator *scheme, double x) {
     if (!is_linear(scheme) || !(x > 0))
         return NAN;
-    oscillator o = begin(scheme);
-    double most = nevh_stepper_status(o.stepper) ? NAN : excess(&o, x);
-    end(&o);
+    oscillator o = stability_begin(scheme);
+    double most =
+        nevh_stepper_status(o.stepper) ? NAN : stability_excess(&o, x);
+    stability_end(&o);
     return most > o.growing ? pow(1 + most, 2 * pi / x) : isnan(most) ? NAN : 1;
 }
 
@@ -238,9 +239,9 @@ double nevh_stability_angle(const nevh_integrator *scheme, double x) {
     double q[2] = {1, 0}, p[2] = {0, 1};
     if (!is_linear(scheme))
         return NAN;
-    oscillator o = begin(scheme);
+    oscillator o = stability_begin(scheme);
     int status = nevh_stepper_apply(o.stepper, 0, x, q, p);
-    end(&o);
+    stability_end(&o);
     double determinant = q[0] * p[1] - q[1] * p[0];
     return status ? NAN : acos((q[0] + p[1]) / 2 / sqrt(determinant));
 }

@@ -72,7 +72,7 @@ void nevh_state_error_hand(nevh_state_error *e, nevh_pair_fn hand, void *data) {
 
 /* The time since the start.  t is rounded; what the steps add up to is not, or
    less.  The last step may be another than the others. */
-static double elapsed(nevh_state_error *e, size_t step, double t) {
+static double state_error_elapsed(nevh_state_error *e, size_t step, double t) {
     const nevh_stepper *s = e->followed;
     double t0 = e->reference->t0, passed = t - t0;
     double slack = 4 * DBL_EPSILON * fmax(fabs(t), fabs(t0));
@@ -85,7 +85,7 @@ static double elapsed(nevh_state_error *e, size_t step, double t) {
     return fabs(better - passed) <= slack ? better : passed;
 }
 
-static void add(nevh_state_error *e, size_t k, double value) {
+static void state_error_add(nevh_state_error *e, size_t k, double value) {
     double difference = (double)fabsl(value - e->state[k]);
     double error = difference / nevh_reference_range(e->reference, k);
     e->worst = fmax(e->worst, isfinite(error) ? error : INFINITY);
@@ -99,14 +99,14 @@ int nevh_state_error_observe(void *state_error, size_t step, double t,
         return NEVH_EINVAL;
     nevh_state_error *e = state_error;
     size_t n = e->reference->n;
-    double passed = elapsed(e, step, t);
+    double passed = state_error_elapsed(e, step, t);
     if (e->unknown || !is_due(e, t))
         return NEVH_OK;
     e->observed = true;
     e->unknown = nevh__reference_find(e->reference, passed, e->state);
     for (size_t k = 0; !e->unknown && k < n; k++) {
-        add(e, k, q[k]);
-        add(e, n + k, p[k]);
+        state_error_add(e, k, q[k]);
+        state_error_add(e, n + k, p[k]);
     }
     for (size_t k = 0; k < 2 * n; k++)
         e->rounded[k] = (double)e->state[k];

@@ -30,7 +30,7 @@ static double scale_of(const probe *b, size_t i) {
 
 /* A fresh step, of the K of the state probed where time is transformed: its own
    would be another one for each state. */
-static int take_step(const probe *b) {
+static int symplecticity_take_step(const probe *b) {
     nevh_stepper *s = b->stepper;
     nevh_work *w = &s->work;
     double *q = b->z, *p = b->z + b->n;
@@ -50,13 +50,13 @@ static int add_image(probe *b, size_t j, double move, double weight) {
     memcpy(b->z, b->q, n * sizeof *b->z);
     memcpy(b->z + n, b->p, n * sizeof *b->z);
     b->z[j] += move * scale_of(b, j);
-    int status = take_step(b);
+    int status = symplecticity_take_step(b);
     for (size_t i = 0; !status && i < 2 * n; i++)
         b->m[j * 2 * n + i] += weight * b->z[i] / scale_of(b, i);
     return status;
 }
 
-static int differentiate(probe *b) {
+static int symplecticity_differentiate(probe *b) {
     int status = NEVH_OK;
     for (size_t j = 0; j < 2 * b->n; j++)
         for (size_t c = 0; !status && c < 3; c++) {
@@ -115,7 +115,8 @@ int nevh_symplecticity_defect(nevh_stepper *s, double t, double h,
     b.z = nevh__array(m, sizeof *b.z);
     b.m = nevh__array(m * m, sizeof *b.m);
     b.tilted = nevh__array(m * m, sizeof *b.tilted);
-    int status = b.z && b.m && b.tilted ? differentiate(&b) : (int)NEVH_ENOMEM;
+    int status = b.z && b.m && b.tilted ? symplecticity_differentiate(&b)
+                                        : (int)NEVH_ENOMEM;
     if (!status)
         *defect = find_defect(&b);
     nevh_stepper_reset(s);
@@ -125,7 +126,7 @@ int nevh_symplecticity_defect(nevh_stepper *s, double t, double h,
     return status;
 }
 
-static double distance(const probe *b) {
+static double symplecticity_distance(const probe *b) {
     double most = 0;
     for (size_t i = 0; i < b->n; i++) {
         most = fmax(most, fabs(b->z[i] - b->q[i]) / scale_of(b, i));
@@ -153,7 +154,7 @@ int nevh_reversal_defect(nevh_stepper *s, double t, double h, size_t steps,
         status = nevh_run(s, nevh__next_time(s, t, h), -h, steps, b.z, b.z + n,
                           NULL, 0);
     if (!status)
-        *defect = distance(&b);
+        *defect = symplecticity_distance(&b);
     free(b.z);
     return status;
 }

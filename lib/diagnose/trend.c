@@ -80,7 +80,7 @@ void nevh__trend_multiply(nevh__trend *s, double factor) {
 }
 
 /* The union of some bins. */
-static nevh__bin join(const nevh__trend *s, size_t from, size_t to) {
+static nevh__bin trend_join(const nevh__trend *s, size_t from, size_t to) {
     nevh__bin all = s->bin[from];
     for (size_t i = from + 1; i < to; i++) {
         all.lowest = fmin(all.lowest, s->bin[i].lowest);
@@ -90,8 +90,8 @@ static nevh__bin join(const nevh__trend *s, size_t from, size_t to) {
     return all;
 }
 
-static double largest(const nevh__trend *s, size_t from, size_t to) {
-    nevh__bin all = join(s, from, to);
+static double trend_largest(const nevh__trend *s, size_t from, size_t to) {
+    nevh__bin all = trend_join(s, from, to);
     return fmax(fabs(all.lowest), fabs(all.highest));
 }
 
@@ -100,7 +100,7 @@ static double largest_relative(const nevh__trend *s, size_t from, size_t to) {
     double most = 0;
     for (size_t i = from; i < to; i++)
         if (s->bin[i].met > 0)
-            most = fmax(most, largest(s, i, i + 1) / s->bin[i].met);
+            most = fmax(most, trend_largest(s, i, i + 1) / s->bin[i].met);
     return most;
 }
 
@@ -155,8 +155,8 @@ static void fit_bins(const nevh__trend *s, nevh_energy_report *r) {
 static double rate(const nevh__trend *s, size_t bins) {
     if (bins < 4)
         return 0;
-    double before = largest(s, bins / 4, bins / 2);
-    double after = largest(s, bins / 2, bins);
+    double before = trend_largest(s, bins / 4, bins / 2);
+    double after = trend_largest(s, bins / 2, bins);
     return before > 0 && after > 0 ? log2(after / before) : 0;
 }
 
@@ -172,16 +172,16 @@ void nevh__trend_report(const nevh__trend *s, nevh_energy_report *r) {
     if (s->samples == 0)
         return;
     size_t fifth = s->bins < 5 ? 1 : s->bins / 5;
-    nevh__bin first = join(s, 0, fifth);
-    nevh__bin last = join(s, s->bins - fifth, s->bins);
+    nevh__bin first = trend_join(s, 0, fifth);
+    nevh__bin last = trend_join(s, s->bins - fifth, s->bins);
     r->max = s->most;
     r->rms = sqrt(s->squares / (double)s->samples);
     r->final = s->last;
     r->drift = s->tt > 0 ? s->te / s->tt : 0;
     fit_bins(s, r);
-    r->first_fifth = largest(s, 0, fifth);
-    r->last_fifth = largest(s, s->bins - fifth, s->bins);
-    r->early = largest(s, 0, s->bins < 8 ? 1 : s->bins / 8);
+    r->first_fifth = trend_largest(s, 0, fifth);
+    r->last_fifth = trend_largest(s, s->bins - fifth, s->bins);
+    r->early = trend_largest(s, 0, s->bins < 8 ? 1 : s->bins / 8);
     for (size_t i = 0, bins = s->bins; i < 3; i++, bins /= 2)
         r->rate[i] = rate(s, bins);
     r->span = fabs(s->last_t - s->first_t);

@@ -50,7 +50,7 @@ static void slope_by(const eight *e, double z[], size_t k, double g[]) {
     memcpy(row, kept, sizeof kept);
 }
 
-static void slopes(const eight *e, double z[], double g[]) {
+static void variational_slopes(const eight *e, double z[], double g[]) {
     const nevh_term *decl = e->decl;
     if (decl->gradient)
         decl->gradient(LANES, e->t, z, z + decl->nq * LANES, e->c, decl->params,
@@ -67,9 +67,9 @@ static void copy_rows(double *to, const double *from, size_t rows, size_t width,
         memcpy(to + k * LANES, from + k * width + at, LANES * sizeof *to);
 }
 
-static void take(eight *e, const void *params, size_t width, size_t at,
-                 const double t[], const double q[], const double p[],
-                 const double c[]) {
+static void variational_take(eight *e, const void *params, size_t width,
+                             size_t at, const double t[], const double q[],
+                             const double p[], const double c[]) {
     const nevh_term *decl = params;
     size_t nq = decl->nq, np = decl->np;
     e->decl = decl;
@@ -89,8 +89,8 @@ static void along_block(size_t width, const double t[], const double q[],
     eight e;
     double g[MOST * LANES];
     for (size_t at = 0; at < width; at += LANES) {
-        take(&e, params, width, at, t, q, p, c);
-        slopes(&e, e.z, g);
+        variational_take(&e, params, width, at, t, q, p, c);
+        variational_slopes(&e, e.z, g);
         for (size_t j = 0; j < LANES; j++) {
             h[at + j] = 0;
             for (size_t k = 0; k < e.m; k++)
@@ -111,7 +111,7 @@ static void hessian_along(eight *e, double product[]) {
         double move = (i / 2 + 1) * (i % 2 ? -1 : 1);
         for (size_t k = 0; k < e->m * LANES; k++)
             moved[k] = e->z[k] + move * step[k % LANES] * e->d[k];
-        slopes(e, moved, g);
+        variational_slopes(e, moved, g);
         for (size_t k = 0; k < e->m * LANES; k++)
             product[k] +=
                 weights[i / 2] / (2 * move) * (g[k] / step[k % LANES]);
@@ -130,9 +130,9 @@ static void along_gradient(size_t width, const double t[], const double q[],
     eight e;
     double g[MOST * LANES], product[MOST * LANES];
     for (size_t at = 0; at < width; at += LANES) {
-        take(&e, params, width, at, t, q, p, c);
+        variational_take(&e, params, width, at, t, q, p, c);
         size_t nq = e.decl->nq, np = e.decl->np;
-        slopes(&e, e.z, g);
+        variational_slopes(&e, e.z, g);
         hessian_along(&e, product);
         put_rows(dq, product, nq, width, at);
         put_rows(dq ? dq + nq * width : NULL, g, nq, width, at);
@@ -154,8 +154,8 @@ static size_t *doubled(const size_t *from, size_t count, size_t each,
 }
 
 /* The term's constants, and, unless it is a tape, lengths. */
-static double *constants(const nevh_term *d, const double scale[], size_t n,
-                         bool tape) {
+static double *variational_constants(const nevh_term *d, const double scale[],
+                                     size_t n, bool tape) {
     size_t each = d->nc + (tape ? 0 : d->nq + d->np);
     double *to = nevh__array(d->count * each, sizeof *to);
     for (size_t i = 0; to && i < d->count; i++) {
@@ -193,8 +193,9 @@ static int shape(nevh_term *to, const nevh_term *d, void **tape,
     return NEVH_OK;
 }
 
-static int add_term(nevh__variational *v, const nevh_term *d, size_t n,
-                    const double scale[], nevh__report *report) {
+static int variational_add_term(nevh__variational *v, const nevh_term *d,
+                                size_t n, const double scale[],
+                                nevh__report *report) {
     void **tape = &v->tapes[v->count++];
     nevh_term to = {.effect = d->effect, .count = d->count};
     int status = shape(&to, d, tape, report);
@@ -206,7 +207,7 @@ static int add_term(nevh__variational *v, const nevh_term *d, size_t n,
         to.nc = d->nc;
     size_t *q = doubled(d->q, d->count, d->nq, 0, n);
     size_t *p = doubled(d->p, d->count, d->np, n, 0);
-    double *c = constants(d, scale, n, *tape);
+    double *c = variational_constants(d, scale, n, *tape);
     to.q = q;
     to.p = p;
     to.c = c;
@@ -221,7 +222,8 @@ static int add_term(nevh__variational *v, const nevh_term *d, size_t n,
     return status;
 }
 
-static int add_friction(nevh__variational *v, const nevh_system *s) {
+static int variational_add_friction(nevh__variational *v,
+                                    const nevh_system *s) {
     double *rates = nevh__array(2 * s->n, sizeof *rates);
     int status = rates ? NEVH_OK : NEVH_ENOMEM;
     if (rates && nevh_system_friction(s, rates)) {
@@ -232,17 +234,18 @@ static int add_friction(nevh__variational *v, const nevh_system *s) {
     return status;
 }
 
-static int fill(nevh__variational *v, const nevh_system *s,
-                const double scale[], nevh__report *report) {
+static int variational_fill(nevh__variational *v, const nevh_system *s,
+                            const double scale[], nevh__report *report) {
     v->system = nevh_system_new(2 * s->n);
     v->tapes = nevh__array(s->n_terms, sizeof *v->tapes);
     int status = v->system && v->tapes ? NEVH_OK : NEVH_ENOMEM;
     for (size_t i = 0; !status && i < s->n_terms; i++)
         if (nevh__term_on(s, s->terms[i]) &&
             s->terms[i]->decl.nq + s->terms[i]->decl.np)
-            status = add_term(v, &s->terms[i]->decl, s->n, scale, report);
+            status = variational_add_term(v, &s->terms[i]->decl, s->n, scale,
+                                          report);
     if (!status)
-        status = add_friction(v, s);
+        status = variational_add_friction(v, s);
     if (status && !report->status)
         nevh__fail(report, status, "out of memory");
     return status;
@@ -254,7 +257,7 @@ nevh__variational *nevh__variational_new(const nevh_system *s,
     nevh__variational *v = nevh__array(1, sizeof *v);
     if (!v)
         nevh__no_memory(report);
-    else if (!fill(v, s, scale, report))
+    else if (!variational_fill(v, s, scale, report))
         return v;
     nevh__variational_free(v);
     return NULL;

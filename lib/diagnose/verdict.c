@@ -146,7 +146,7 @@ bool nevh_energy_passes_over(const nevh_energy_report *r) {
     return r && r->missed > good * r->max;
 }
 
-static nevh_verdict judge(const nevh_energy_report *r, double times) {
+static nevh_verdict verdict_judge(const nevh_energy_report *r, double times) {
     if (r->theory == NEVH_THEORY_NONE)
         times = INFINITY;
     if (r->samples <= 1) /* of the start alone */
@@ -166,7 +166,7 @@ static nevh_verdict judge(const nevh_energy_report *r, double times) {
 }
 
 nevh_verdict nevh_energy_verdict(const nevh_energy_report *r, double times) {
-    nevh_verdict verdict = r ? judge(r, times) : NEVH_UNDECIDED;
+    nevh_verdict verdict = r ? verdict_judge(r, times) : NEVH_UNDECIDED;
     bool passes = verdict != NEVH_BOUNDED && nevh_energy_passes_over(r);
     return passes ? NEVH_UNDECIDED : verdict;
 }

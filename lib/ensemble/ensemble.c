@@ -160,7 +160,7 @@ static void lay_out_snapshot(const nevh_ensemble *e, nevh__arena *a,
     s->memory = numbers(a, e->stepper->rows * e->width);
 }
 
-static void lay_out(nevh__arena *a, void *ensemble) {
+static void ensemble_lay_out(nevh__arena *a, void *ensemble) {
     nevh_ensemble *e = ensemble;
     size_t n = e->n, width = e->width, stride = e->stride;
     bool copies = stride != width;
@@ -201,7 +201,7 @@ static bool plan_root(nevh_ensemble *e) {
 }
 
 static int plan_rooms(nevh_ensemble *e) {
-    e->memory = nevh__arena_new(lay_out, e);
+    e->memory = nevh__arena_new(ensemble_lay_out, e);
     return e->memory && plan_root(e) ? NEVH_OK : nevh__no_memory(&e->report);
 }
 
@@ -237,7 +237,7 @@ static int take_options(nevh_ensemble *e) {
     return status ? status : take_outcomes(e);
 }
 
-static int plan(nevh_ensemble *e) {
+static int ensemble_plan(nevh_ensemble *e) {
     static int (*const plans[])(nevh_ensemble *) = {
         plan_steppers,
         plan_energy,
@@ -274,7 +274,7 @@ nevh_ensemble *nevh_ensemble_new(const nevh_system *system,
         return NULL;
     e->system = system;
     e->options = *options;
-    int status = plan(e);
+    int status = ensemble_plan(e);
     e->planned = !status;
     e->options.options = NULL; /* lives until now */
     e->options.outcomes = NULL;

@@ -75,7 +75,7 @@ static bool next_member(nevh_ensemble *e, size_t lane, uint64_t *member) {
     return false;
 }
 
-static bool begin(nevh_ensemble *e, size_t lane) {
+static bool lanes_begin(nevh_ensemble *e, size_t lane) {
     nevh__lane *l = &e->lanes[lane];
     uint64_t member;
     if (!next_member(e, lane, &member))
@@ -107,14 +107,14 @@ static void go_along(nevh_ensemble *e, size_t lane, size_t with) {
 }
 
 /* Fills lanes that are free.  Returns whether any orbit is new. */
-static bool fill(nevh_ensemble *e) {
+static bool lanes_fill(nevh_ensemble *e) {
     size_t which;
     bool any = false, more = !(e->together && any_busy(e, &which));
     for (size_t lane = 0; lane < e->width; lane++)
         e->lanes[lane].look = false;
     for (size_t lane = 0; more && lane < e->width; lane++)
         if (!e->lanes[lane].busy) {
-            more = begin(e, lane);
+            more = lanes_begin(e, lane);
             any |= more;
         }
     if (any_busy(e, &which))
@@ -299,7 +299,7 @@ static void run_lanes(nevh_ensemble *e) {
     size_t steps = 0, which;
     bool asks = true;
     while (!e->stopped) {
-        if (asks && fill(e)) {
+        if (asks && lanes_fill(e)) {
             asks = look_and_end(e);
             if (asks)
                 continue;
@@ -389,7 +389,7 @@ int nevh_ensemble_run(nevh_ensemble *e, nevh_member_fn next,
     if (e->chaotic && nevh__chaotic_run(e))
         ; /* nothing else is asked for */
     else if (e->alone)
-        while (!e->stopped && begin(e, 0))
+        while (!e->stopped && lanes_begin(e, 0))
             run_one(e);
     else
         run_lanes(e);

@@ -5,7 +5,8 @@
 #include <string.h>
 
 /* Rows of `width`, in rows of `stride` that repeat the first lane. */
-static void widen(const nevh_ensemble *e, const double from[], double to[]) {
+static void observe_widen(const nevh_ensemble *e, const double from[],
+                          double to[]) {
     if (from == to)
         return;
     for (size_t k = 0; k < e->n; k++)
@@ -43,11 +44,11 @@ void nevh__ensemble_value(const nevh_ensemble *e, size_t o, const double t[],
                     quantity->velocities ? e->v : NULL, values);
 }
 
-static void evaluate(nevh_ensemble *e) {
+static void observe_evaluate(nevh_ensemble *e) {
     for (size_t lane = 0; lane < e->stride; lane++)
         e->now.t[lane] = e->lanes[lane < e->width ? lane : 0].t;
-    widen(e, e->q, e->wide_q);
-    widen(e, e->p, e->wide_p);
+    observe_widen(e, e->q, e->wide_q);
+    observe_widen(e, e->p, e->wide_p);
     nevh__ensemble_move(e, e->now.t, e->wide_q, e->wide_p);
     for (size_t i = 0; i < e->n_outcomes; i++)
         if (e->outcomes[i].decl.quantity.value)
@@ -102,7 +103,7 @@ static void *turn_to_outcome(nevh__observation *at, size_t o) {
     return entry->records + at->lane * entry->type->size;
 }
 
-static void take(nevh__observation *at, bool fresh) {
+static void observe_take(nevh__observation *at, bool fresh) {
     const nevh_ensemble *e = at->ensemble;
     for (size_t o = 0; o < e->n_outcomes; o++) {
         const nevh__outcome_type *type = e->outcomes[o].type;
@@ -146,7 +147,7 @@ static void look_at_energy(nevh_ensemble *e) {
 void nevh__ensemble_look(nevh_ensemble *e) {
     nevh__observation at = {
         .ensemble = e, .t_start = e->options.t_start, .count = 1};
-    evaluate(e);
+    observe_evaluate(e);
     if (e->energy)
         look_at_energy(e);
     for (size_t lane = 0; lane < e->width; lane++) {
@@ -154,7 +155,7 @@ void nevh__ensemble_look(nevh_ensemble *e) {
         if (!l->look || l->over)
             continue;
         turn_to_lane(&at, lane);
-        take(&at, l->fresh);
+        observe_take(&at, l->fresh);
         l->over |=
             all_known(e, lane) || (e->options.stop.value && e->stop[lane] > 0);
         l->fresh = false;
@@ -169,7 +170,7 @@ void nevh__ensemble_fail(nevh_ensemble *e, size_t lane,
     e->lanes[lane].over = true;
 }
 
-static void collect(nevh_ensemble *e, size_t lane) {
+static void observe_collect(nevh_ensemble *e, size_t lane) {
     nevh__observation at = {.ensemble = e, .t_start = e->options.t_start};
     double *to = e->result;
     turn_to_lane(&at, lane);
@@ -186,7 +187,7 @@ void nevh__ensemble_end(nevh_ensemble *e, size_t lane) {
     for (size_t i = 0; i < e->columns; i++)
         e->result[i] = NAN;
     if (!l->report.status)
-        collect(e, lane);
+        observe_collect(e, lane);
     nevh_member_result result = {l->member, l->report.status, l->report.text,
                                  e->result};
     l->busy = l->over = false;

@@ -61,8 +61,8 @@ void nevh__own_drop(nevh_ensemble *e, size_t lane) {
 }
 
 /* The lane's constants, in all that reads them. */
-static bool take(nevh_ensemble *e, size_t lane, const nevh__own *own,
-                 const nevh_stepper *narrow) {
+static bool own_take(nevh_ensemble *e, size_t lane, const nevh__own *own,
+                     const nevh_stepper *narrow) {
     nevh_work *w = &e->stepper->work;
     size_t kernel = kernel_of(e->stepper);
     if (narrow->rows != e->stepper->rows ||
@@ -84,7 +84,7 @@ bool nevh__own_take(nevh_ensemble *e, size_t lane, uint64_t member) {
     bool made = own && !nevh__ensemble_stepper(e, own->system, own->options, 1,
                                                &narrow);
     e->report = before;
-    if (!made || !take(e, lane, own, narrow)) {
+    if (!made || !own_take(e, lane, own, narrow)) {
         nevh_stepper_free(narrow);
         return false;
     }

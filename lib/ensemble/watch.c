@@ -117,7 +117,7 @@ static void copy_lanes(const nevh_ensemble *e, double to[],
     memcpy(to, from, e->width * sizeof *to);
 }
 
-static void keep(nevh_ensemble *e) {
+static void watch_keep(nevh_ensemble *e) {
     nevh__watch *w = e->watch;
     size_t bytes = e->n * e->width * sizeof *e->q;
     memcpy(w->q, e->q, bytes);
@@ -156,7 +156,8 @@ static void turn_to(nevh_ensemble *e, size_t steps) {
 
 /* Steps. */
 
-static size_t run(nevh_ensemble *e, size_t from, size_t done, size_t steps) {
+static size_t watch_run(nevh_ensemble *e, size_t from, size_t done,
+                        size_t steps) {
     return nevh__native_watch(
         &e->stepper->work,
         (nevh__steps_call){.t0 = e->options.t_start,
@@ -171,12 +172,12 @@ static size_t run(nevh_ensemble *e, size_t from, size_t done, size_t steps) {
 /* The state before the last is looked back to.  Returns how many there are: where it is
    fewer, of a state that is none. */
 static size_t run_all(nevh_ensemble *e, size_t from, size_t steps) {
-    size_t first = run(e, from, 0, steps - 1);
+    size_t first = watch_run(e, from, 0, steps - 1);
     if (first < steps - 1)
         return first;
     turn_to(e, first);
     nevh__ensemble_look_back(e, e->h);
-    return first + run(e, from, first, 1);
+    return first + watch_run(e, from, first, 1);
 }
 
 /* Looks. */
@@ -249,7 +250,7 @@ static size_t count_quiet(nevh_ensemble *e, size_t steps) {
     return steps;
 }
 
-static void take(nevh_ensemble *e, size_t steps) {
+static void watch_take(nevh_ensemble *e, size_t steps) {
     const nevh__watch *w = e->watch;
     nevh__observation at = observation(e, steps);
     if (w->energy != NO_ROW)
@@ -265,7 +266,7 @@ static void take(nevh_ensemble *e, size_t steps) {
 /* So many of the steps that are quiet; fewer than two are none. */
 static size_t take_quiet(nevh_ensemble *e, size_t from, size_t steps) {
     nevh__snapshot ago1 = e->ago1, ago2 = e->ago2;
-    keep(e);
+    watch_keep(e);
     size_t done = run_all(e, from, steps);
     size_t quiet = done > 1 ? count_quiet(e, done) : 0;
     if (quiet < steps)
@@ -273,7 +274,7 @@ static size_t take_quiet(nevh_ensemble *e, size_t from, size_t steps) {
     if (quiet > 1 && quiet < steps)
         run_all(e, from, quiet);
     if (quiet > 1) {
-        take(e, quiet);
+        watch_take(e, quiet);
         turn_to(e, quiet);
         return quiet;
     }

@@ -113,7 +113,7 @@ bool nevh__scope_loop(nevh__scope *s, const nevh__expression *loop,
 #undef ELEMENT
 
 /* Numbers that are written are doubles. */
-static nevh__wide element(const nevh__expression *e, size_t index) {
+static nevh__wide evaluate_element(const nevh__expression *e, size_t index) {
     return e->wide_values ? e->wide_values[index] : e->values[index];
 }
 
@@ -121,5 +121,5 @@ static nevh__wide element(const nevh__expression *e, size_t index) {
 #define NAMED(name)        name##_wide
 #define OPERATION(f, a, b) nevh__operation_wide(f, a, b)
 #define NUMBER(e)          (e)->wide_number
-#define ELEMENT(e, index)  element(e, index)
+#define ELEMENT(e, index)  evaluate_element(e, index)
 #include "expression/evaluate_text.h"

@@ -16,16 +16,16 @@ static const struct {
     {"sgn", NEVH__SIGN},
 };
 
-static bool is(const char *name, const char *text, size_t bytes) {
+static bool function_is(const char *name, const char *text, size_t bytes) {
     return strlen(name) == bytes && memcmp(name, text, bytes) == 0;
 }
 
 nevh__tape_operation nevh__function_named(const char *name, size_t bytes) {
     for (nevh__tape_operation i = NEVH__SIN; i < NEVH__OPERATION_COUNT; i++)
-        if (is(nevh__operation_name(i), name, bytes))
+        if (function_is(nevh__operation_name(i), name, bytes))
             return i;
     for (size_t i = 0; i < sizeof aliases / sizeof *aliases; i++)
-        if (is(aliases[i].name, name, bytes))
+        if (function_is(aliases[i].name, name, bytes))
             return aliases[i].operation;
     return NEVH__OPERATION_COUNT;
 }

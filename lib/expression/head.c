@@ -28,7 +28,7 @@ static nevh__tree *parse_bound(nevh__parser *p) {
     return tree;
 }
 
-static bool accept(nevh__parser *p, int kind) {
+static bool head_accept(nevh__parser *p, int kind) {
     bool is = p->token.kind == kind;
     if (is)
         nevh__parser_advance(p);
@@ -49,7 +49,7 @@ static bool parse_range(nevh__parser *p, nevh__head *head) {
     head->from = parse_bound(p);
     if (p->error->status)
         return false;
-    if (accept(p, NEVH__DOTS))
+    if (head_accept(p, NEVH__DOTS))
         head->to = parse_bound(p);
     else if (head->index)
         return nevh__parser_refuse(p) != NULL;
@@ -63,13 +63,13 @@ static bool parse_head(nevh__parser *p, nevh__head *head) {
     if (!(head->name = copy_word(p)))
         return false;
     nevh__token opening = p->token;
-    if (accept(p, '[')) {
+    if (head_accept(p, '[')) {
         if (!parse_range(p, head))
             return false;
         if (p->token.kind == NEVH__END)
             return nevh__formula_fail(p->error, NEVH_EINVAL, opening.column, 1,
                                       "\"]\" is missing for this \"[\"");
-        if (!accept(p, ']'))
+        if (!head_accept(p, ']'))
             return nevh__parser_refuse(p) != NULL;
     }
     if (p->token.kind == NEVH__END)

@@ -28,7 +28,7 @@ static bool no_memory(const part_tables *p) {
     return nevh__formula_no_memory(p->adder->walk.scope.error);
 }
 
-static bool fits(const table *t, const nevh__walk *w) {
+static bool instance_fits(const table *t, const nevh__walk *w) {
     if (t->n_shape != w->n_shape || t->nc != w->n_constants)
         return false;
     size_t bytes = t->n_shape * sizeof *t->shape;
@@ -40,7 +40,7 @@ static table *table_for(part_tables *p) {
     const nevh__walk *w = &p->adder->walk;
     for (size_t i = 0; i < p->n; i++) {
         size_t k = (p->last + i) % p->n;
-        if (fits(&p->tables[k], w))
+        if (instance_fits(&p->tables[k], w))
             return &p->tables[p->last = k];
     }
     if (p->n == SHAPES) {
@@ -60,7 +60,7 @@ static table *table_for(part_tables *p) {
     return &tables[p->last = p->n++];
 }
 
-static bool grow(table *t) {
+static bool instance_grow(table *t) {
     size_t capacity = t->capacity ? 2 * t->capacity : 1;
     size_t *q = nevh__grow(t->q, capacity * t->nq + 1, sizeof *q);
     t->q = q ? q : t->q;
@@ -82,7 +82,7 @@ static void copy(void *to, const void *from, size_t count, size_t size) {
 static bool keep_instance(part_tables *p) {
     const nevh__walk *w = &p->adder->walk;
     table *t = table_for(p);
-    if (!t || !t->shape || (t->count == t->capacity && !grow(t)))
+    if (!t || !t->shape || (t->count == t->capacity && !instance_grow(t)))
         return no_memory(p);
     copy(t->q + t->count * t->nq, w->read[0], t->nq, sizeof *t->q);
     copy(t->p + t->count * t->np, w->read[1], t->np, sizeof *t->p);
@@ -195,7 +195,7 @@ static bool order_pairs(table *t) {
 
 /* Terms. */
 
-static bool own(nevh__adder *a, nevh__tape *tape) {
+static bool instance_own(nevh__adder *a, nevh__tape *tape) {
     nevh__owned *owned = a->owned;
     nevh__tape **tapes =
         nevh__grow(owned->tapes, owned->count + 1, sizeof *tapes);
@@ -222,7 +222,8 @@ static char *term_name(const nevh__adder *a) {
                   : nevh__text("%s", a->effect);
 }
 
-static bool add_term(nevh__adder *a, const table *t, nevh__tape *tape) {
+static bool instance_add_term(nevh__adder *a, const table *t,
+                              nevh__tape *tape) {
     nevh__formula_error *error = a->walk.scope.error;
     nevh_term term = {.effect = a->effect};
     nevh__tape_shape(&term, tape);
@@ -261,7 +262,8 @@ static bool make_term(part_tables *p, table *t) {
         nevh__tape_free(tape);
         return no_memory(p);
     }
-    return tape && own(p->adder, tape) && add_term(p->adder, t, tape);
+    return tape && instance_own(p->adder, tape) &&
+           instance_add_term(p->adder, t, tape);
 }
 
 static bool add_constant(part_tables *p) {
@@ -271,7 +273,8 @@ static bool add_constant(part_tables *p) {
     table none = {.count = 1};
     if (!tape)
         return no_memory(p);
-    return own(p->adder, tape) && add_term(p->adder, &none, tape);
+    return instance_own(p->adder, tape) &&
+           instance_add_term(p->adder, &none, tape);
 }
 
 bool nevh__add_part(nevh__adder *adder, const nevh__formula_part *part) {

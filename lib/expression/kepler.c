@@ -31,7 +31,7 @@ static double radius(double anomaly, double e) {
     return (1 - e) + 2 * e * s * s;
 }
 
-static double solve(double mean, double e) {
+static double kepler_solve(double mean, double e) {
     double x = fmin(fmin(mean + e, pi), mean / (1 - e));
     if (e > 0)
         x = fmin(x, cbrt(pi * pi * mean / e));
@@ -52,7 +52,7 @@ double nevh__kepler(double mean, double e) {
     double rest = fma(-turns, turn_rest, fma(-turns, turn, mean));
     if (rest == 0 || e == 0)
         return mean;
-    return copysign(solve(fmin(fabs(rest), pi), e), rest) + turns * turn;
+    return copysign(kepler_solve(fmin(fabs(rest), pi), e), rest) + turns * turn;
 }
 
 double nevh__kepler_slope(double anomaly, double e) {

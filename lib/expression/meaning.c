@@ -125,7 +125,7 @@ static nevh__expression *resolve_definition(nevh__resolver *r,
 }
 
 /* Most formulas, and all of parameters, have none. */
-static bool reserve(nevh__resolver *r) {
+static bool meaning_reserve(nevh__resolver *r) {
     size_t count = r->names->count;
     if (!r->definitions)
         r->definitions =
@@ -144,7 +144,7 @@ static nevh__expression *use_definition(nevh__resolver *r,
     if (node->kind == NEVH__NODE_ELEMENT)
         return nevh__resolver_fail_name(
             r, node, "%s is a definition: it has no index", "");
-    if (!reserve(r))
+    if (!meaning_reserve(r))
         return NULL;
     if (r->open[entry - r->names->entries])
         return nevh__resolver_fail_name(r, node, "%s is defined by itself", "");

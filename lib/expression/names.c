@@ -89,8 +89,8 @@ static bool is_word(const char *name) {
            token.bytes + 2 <= NEVH__NAME_LENGTH;
 }
 
-static bool refuse(const char *name, nevh__formula_error *error,
-                   const char *format) {
+static bool names_refuse(const char *name, nevh__formula_error *error,
+                         const char *format) {
     char part[NEVH__NAME_LENGTH + 1] = "";
     strncat(part, name, NEVH__NAME_LENGTH);
     return nevh__formula_fail(error, NEVH_EINVAL, 1, nevh__characters(name),
@@ -101,24 +101,24 @@ static bool refuse(const char *name, nevh__formula_error *error,
 static bool check_name(const nevh__names *names, const char *name,
                        nevh__formula_error *error) {
     if (!is_word(name))
-        return refuse(name, error,
-                      "\"%s\" is no name: a letter, then letters, digits "
-                      "and _");
+        return names_refuse(name, error,
+                            "\"%s\" is no name: a letter, then letters, digits "
+                            "and _");
     if (strcmp(name, "t") == 0)
-        return refuse(name, error, "%s is the time");
+        return names_refuse(name, error, "%s is the time");
     if (strcmp(name, "pi") == 0)
-        return refuse(name, error, "%s is a constant");
+        return names_refuse(name, error, "%s is a constant");
     if (strcmp(name, "sum") == 0 ||
         nevh__function_named(name, strlen(name)) != NEVH__OPERATION_COUNT)
-        return refuse(name, error, "%s is a function");
+        return names_refuse(name, error, "%s is a function");
     if (strncmp(name, "p_", 2) == 0)
-        return refuse(name, error,
-                      "%s would be the momentum of a coordinate %s");
+        return names_refuse(name, error,
+                            "%s would be the momentum of a coordinate %s");
     if (strncmp(name, "v_", 2) == 0)
-        return refuse(name, error,
-                      "%s would be the velocity of a coordinate %s");
+        return names_refuse(name, error,
+                            "%s would be the velocity of a coordinate %s");
     if (entry_exactly(names, name))
-        return refuse(name, error, "the name %s is taken");
+        return names_refuse(name, error, "the name %s is taken");
     return true;
 }
 

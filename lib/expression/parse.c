@@ -89,7 +89,7 @@ static bool take_operand(nevh__parser *p, nevh__syntax_node *node) {
 }
 
 /* Whatever nests comes by here, and goes by leave. */
-static bool enter(nevh__parser *p) {
+static bool parse_enter(nevh__parser *p) {
     if (p->depth++ < NEVH__NESTING)
         return true;
     return nevh__formula_fail(p->error, NEVH_EINVAL, p->token.column,
@@ -99,7 +99,8 @@ static bool enter(nevh__parser *p) {
                               NEVH__NESTING);
 }
 
-static nevh__syntax_node *leave(nevh__parser *p, nevh__syntax_node *node) {
+static nevh__syntax_node *parse_leave(nevh__parser *p,
+                                      nevh__syntax_node *node) {
     p->depth--;
     return node;
 }
@@ -107,7 +108,8 @@ static nevh__syntax_node *leave(nevh__parser *p, nevh__syntax_node *node) {
 static nevh__syntax_node *parse_loop(nevh__parser *p,
                                      const nevh__token *opening) {
     nevh__syntax_node *loop = new_node(p, NEVH__NODE_LOOP, p->token.column);
-    if (!loop || !enter(p) || !(loop->name = nevh__parser_copy(p, &p->token)))
+    if (!loop || !parse_enter(p) ||
+        !(loop->name = nevh__parser_copy(p, &p->token)))
         return NULL;
     nevh__parser_advance(p);
     ended(p, loop);
@@ -126,7 +128,7 @@ static nevh__syntax_node *parse_loop(nevh__parser *p,
         return NULL;
     nevh__syntax_node *to = loop->first->next;
     to->next = at_range(p) ? parse_loop(p, opening) : nevh__parse_sum(p);
-    return leave(p, to->next ? loop : NULL);
+    return parse_leave(p, to->next ? loop : NULL);
 }
 
 static nevh__syntax_node *parse_loops(nevh__parser *p) {
@@ -237,7 +239,7 @@ static nevh__syntax_node *parse_signed(nevh__parser *p) {
 }
 
 static nevh__syntax_node *parse_sign(nevh__parser *p) {
-    return enter(p) ? leave(p, parse_signed(p)) : NULL;
+    return parse_enter(p) ? parse_leave(p, parse_signed(p)) : NULL;
 }
 
 /* Operands between `plus` and `minus`, or * and /. */

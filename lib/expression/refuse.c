@@ -30,7 +30,7 @@ static bool begins_value(const nevh__token *token) {
 }
 
 /* The text of a token within a message; shortened where it is a long number. */
-static const char *shown(nevh__parser *p, const nevh__token *token) {
+static const char *refuse_shown(nevh__parser *p, const nevh__token *token) {
     nevh__token part = *token;
     if (part.kind == NEVH__NUMERAL && part.bytes > 30)
         return "...";
@@ -45,7 +45,7 @@ static void *refuse_unit(nevh__parser *p, const nevh__token *from,
                        to->column + to->length - from->column,
                        "units are not read: put %s behind a #, or in [labels]; "
                        "for a product write %s*%s",
-                       word, shown(p, from), word);
+                       word, refuse_shown(p, from), word);
     return NULL;
 }
 
@@ -59,9 +59,9 @@ static void *refuse_neighbours(nevh__parser *p) {
                                ? "this is no number"
                                : "an operator is missing between two numbers");
     const char *left = from->kind == NEVH__NUMERAL || from->kind == NEVH__WORD
-                           ? shown(p, from)
+                           ? refuse_shown(p, from)
                            : "(...)";
-    const char *right = to->kind == '(' ? "(...)" : shown(p, to);
+    const char *right = to->kind == '(' ? "(...)" : refuse_shown(p, to);
     if (from->kind == ']')
         left = "[...]";
     bool apart = from->at + from->bytes != to->at;
@@ -130,7 +130,7 @@ void *nevh__parser_refuse(nevh__parser *p) {
     if (token->kind == NEVH__END)
         return refuse_both(p, previous, previous,
                            "something is missing after \"%s\"",
-                           shown(p, previous));
+                           refuse_shown(p, previous));
     if (token->kind == ')' && previous->kind == '(')
         return refuse_both(p, previous, token, "%s between the parentheses",
                            "something is missing");
@@ -138,7 +138,7 @@ void *nevh__parser_refuse(nevh__parser *p) {
         return refuse_both(p, previous, token, "%s", "write a single \"=\"");
     return refuse_both(p, token, token,
                        "a number, a name or \"(\" is missing before \"%s\"",
-                       shown(p, token));
+                       refuse_shown(p, token));
 }
 
 /* asin for sin, or NULL. */
@@ -161,7 +161,8 @@ static void *refuse_power(nevh__parser *p, const nevh__token *function,
     if (minus)
         nevh__parser_advance(p);
     nevh__token last = p->token.kind == NEVH__NUMERAL ? p->token : power;
-    const char *exponent = last.kind == NEVH__NUMERAL ? shown(p, &last) : "2";
+    const char *exponent =
+        last.kind == NEVH__NUMERAL ? refuse_shown(p, &last) : "2";
     const char *inverse = minus ? inverse_of(name) : NULL;
     size_t length = last.column + last.length - function->column;
     if (inverse)
@@ -185,6 +186,6 @@ void *nevh__parser_refuse_function(nevh__parser *p, const char *name) {
     nevh__formula_fail(p->error, NEVH_EINVAL, function.column,
                        last->column + last->length - function.column,
                        "%s is a function: write %s(%s)", name, name,
-                       argument ? shown(p, last) : "x");
+                       argument ? refuse_shown(p, last) : "x");
     return NULL;
 }

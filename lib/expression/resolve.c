@@ -31,8 +31,9 @@ static nevh__expression *resolve_chain(nevh__resolver *r,
                                           : NULL;
 }
 
-static nevh__expression *apply(nevh__resolver *r, const nevh__syntax_node *node,
-                               nevh__tape_operation operation) {
+static nevh__expression *resolve_apply(nevh__resolver *r,
+                                       const nevh__syntax_node *node,
+                                       nevh__tape_operation operation) {
     nevh__expression *e =
         nevh__expression_new(r, NEVH__FORM_APPLY, node, operands_of(node));
     if (!e || !take_operands(r, node, e))
@@ -58,7 +59,7 @@ static nevh__expression *resolve_call(nevh__resolver *r,
         return nevh__resolver_fail(r, node, node->length,
                                    "wrong number of arguments: it is %s%s",
                                    node->name, nevh__function_usage(operation));
-    return apply(r, node, operation);
+    return resolve_apply(r, node, operation);
 }
 
 /* Fails if a new index cannot have this name. */
@@ -119,9 +120,9 @@ static nevh__expression *resolve_form(nevh__resolver *r,
     case NEVH__NODE_PRODUCT:
         return resolve_chain(r, node, NEVH__FORM_PRODUCT);
     case NEVH__NODE_MINUS:
-        return apply(r, node, NEVH__NEGATE);
+        return resolve_apply(r, node, NEVH__NEGATE);
     case NEVH__NODE_POWER:
-        return apply(r, node, NEVH__POWER);
+        return resolve_apply(r, node, NEVH__POWER);
     }
     return NULL;
 }

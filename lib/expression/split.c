@@ -130,8 +130,8 @@ static bool take_factors(nevh__parts *parts, nevh__expression *core,
     return true;
 }
 
-static bool append(nevh__parts *parts, nevh__formula_part *part,
-                   const nevh__summand *s) {
+static bool split_append(nevh__parts *parts, nevh__formula_part *part,
+                         const nevh__summand *s) {
     if (part->n == part->capacity) {
         size_t capacity = part->capacity ? 4 * part->capacity : 1;
         nevh__summand *grown =
@@ -159,10 +159,10 @@ static bool emit(nevh__parts *parts, nevh__expression *core, const around *a) {
     if (!take_factors(parts, core, a, &s))
         return no_memory(parts);
     nevh__formula_part *part = part_for(parts, a, &s);
-    return (part && append(parts, part, &s)) || no_memory(parts);
+    return (part && split_append(parts, part, &s)) || no_memory(parts);
 }
 
-static bool split(nevh__parts *, nevh__expression *, const around *);
+static bool split_split(nevh__parts *, nevh__expression *, const around *);
 
 static bool split_sum(nevh__parts *parts, nevh__expression *e,
                       const around *a) {
@@ -170,7 +170,7 @@ static bool split_sum(nevh__parts *parts, nevh__expression *e,
     for (size_t i = 0; fine && i < e->n; i++) {
         around sign = {.outer = a,
                        .negative = negative != e->operands[i].inverse};
-        fine = split(parts, e->operands[i].of, &sign);
+        fine = split_split(parts, e->operands[i].of, &sign);
     }
     return fine;
 }
@@ -186,10 +186,11 @@ static bool split_product(nevh__parts *parts, nevh__expression *e,
                       .right = e->operands + k + 1,
                       .n_right = e->n - k - 1,
                       .negative = a && a->negative};
-    return split(parts, e->operands[k].of, &factors);
+    return split_split(parts, e->operands[k].of, &factors);
 }
 
-static bool split(nevh__parts *parts, nevh__expression *e, const around *a) {
+static bool split_split(nevh__parts *parts, nevh__expression *e,
+                        const around *a) {
     bool negative = a && a->negative;
     around sign = {.outer = a, .negative = !negative};
     around loop = {.outer = a, .loop = e, .negative = negative};
@@ -201,10 +202,10 @@ static bool split(nevh__parts *parts, nevh__expression *e, const around *a) {
     case NEVH__FORM_PRODUCT:
         return split_product(parts, e, a);
     case NEVH__FORM_LOOP:
-        return split(parts, e->operands[2].of, &loop);
+        return split_split(parts, e->operands[2].of, &loop);
     case NEVH__FORM_APPLY:
         if (e->operation == NEVH__NEGATE)
-            return split(parts, e->operands[0].of, &sign);
+            return split_split(parts, e->operands[0].of, &sign);
         break;
     default:
         break;
@@ -213,5 +214,5 @@ static bool split(nevh__parts *parts, nevh__expression *e, const around *a) {
 }
 
 bool nevh__split(nevh__parts *parts, nevh__expression *e) {
-    return split(parts, e, NULL);
+    return split_split(parts, e, NULL);
 }

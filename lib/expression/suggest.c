@@ -92,8 +92,9 @@ static const char *coordinate_of(const nevh__names *names, const char *word) {
     return word[1] == '\0' && count == 1 ? only : NULL;
 }
 
-static bool fail(const nevh__syntax_node *node, nevh__formula_error *error,
-                 const char *format, const char *a, const char *b) {
+static bool suggest_fail(const nevh__syntax_node *node,
+                         nevh__formula_error *error, const char *format,
+                         const char *a, const char *b) {
     return nevh__formula_fail(error, NEVH_EINVAL, node->column,
                               nevh__characters(node->name), format, a, b);
 }
@@ -104,14 +105,14 @@ static bool refuse_call(const nevh__names *names, const nevh__syntax_node *node,
     bool known = nevh__entry_named(names, node->name, &meaning) ||
                  strcmp(node->name, "t") == 0 || strcmp(node->name, "pi") == 0;
     if (known)
-        return fail(node, error,
-                    "%s is not a function; for a product write %s*(...)",
-                    node->name, node->name);
+        return suggest_fail(
+            node, error, "%s is not a function; for a product write %s*(...)",
+            node->name, node->name);
     try_functions(s);
-    return fail(node, error,
-                s->best[0] ? "there is no function %s; did you mean %s?"
-                           : "there is no function %s",
-                node->name, s->best);
+    return suggest_fail(node, error,
+                        s->best[0] ? "there is no function %s; did you mean %s?"
+                                   : "there is no function %s",
+                        node->name, s->best);
 }
 
 /* The coordinate of p_x or v_x that does not exist. */
@@ -134,26 +135,26 @@ bool nevh__refuse_name(const nevh__names *names, const nevh__bound *bound,
     if (node->kind == NEVH__NODE_CALL)
         return refuse_call(names, node, &s, error);
     if (strcmp(name, "e") == 0)
-        return fail(node, error,
-                    "%s is not defined; for Euler's number write %s", name,
-                    "exp(1)");
+        return suggest_fail(node, error,
+                            "%s is not defined; for Euler's number write %s",
+                            name, "exp(1)");
     bool moves = name[0] == 'p' || name[0] == 'v';
     const char *coordinate = moves ? coordinate_of(names, name) : NULL;
     if (coordinate)
-        return fail(node, error,
-                    name[0] == 'p' ? "the momentum of %s is p_%s"
-                                   : "the velocity of %s is v_%s",
-                    coordinate, coordinate);
+        return suggest_fail(node, error,
+                            name[0] == 'p' ? "the momentum of %s is p_%s"
+                                           : "the velocity of %s is v_%s",
+                            coordinate, coordinate);
     try_names(&s, names, bound);
     if (moves && name[1] == '_' && name[2])
         return refuse_prefixed(node, &s, error);
     if (strcmp(name, "\xCF\x80") == 0)
         strcpy(s.best, "pi");
     if (in_index && !s.best[0])
-        return fail(node, error, "the index %s is not known%s", name,
-                    "; indices come from sum(i = 1..N, ...)");
-    return fail(node, error,
-                s.best[0] ? "the name %s is not known; did you mean %s?"
-                          : "the name %s is not known",
-                name, s.best);
+        return suggest_fail(node, error, "the index %s is not known%s", name,
+                            "; indices come from sum(i = 1..N, ...)");
+    return suggest_fail(node, error,
+                        s.best[0] ? "the name %s is not known; did you mean %s?"
+                                  : "the name %s is not known",
+                        name, s.best);
 }

@@ -43,9 +43,9 @@ static bool same_operand(const nevh__tape *a, nevh__tape_operand x,
                                   : x.at == y.at;
 }
 
-static bool compare(const nevh__tape *a, const nevh__tape *b,
-                    bool (*same)(const nevh__tape *, nevh__tape_operand,
-                                 const nevh__tape *, nevh__tape_operand)) {
+static bool tape_compare(const nevh__tape *a, const nevh__tape *b,
+                         bool (*same)(const nevh__tape *, nevh__tape_operand,
+                                      const nevh__tape *, nevh__tape_operand)) {
     if (a->length != b->length || !same(a, a->result, b, b->result))
         return false;
     for (size_t i = 0; i < a->length; i++) {
@@ -59,11 +59,11 @@ static bool compare(const nevh__tape *a, const nevh__tape *b,
 }
 
 bool nevh__tape_same(const nevh__tape *a, const nevh__tape *b) {
-    return compare(a, b, same_operand);
+    return tape_compare(a, b, same_operand);
 }
 
 bool nevh__tape_alike(const nevh__tape *a, const nevh__tape *b) {
     return a->n_numbers == b->n_numbers &&
            memcmp(a->count, b->count, sizeof a->count) == 0 &&
-           compare(a, b, same_place);
+           tape_compare(a, b, same_place);
 }

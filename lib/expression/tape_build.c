@@ -23,7 +23,7 @@ void nevh__tape_abandon(nevh__tape_builder *b) {
     free(b);
 }
 
-static size_t hash(const nevh__tape_node *n) {
+static size_t tape_build_hash(const nevh__tape_node *n) {
     static const uint64_t odd = 0x9e3779b97f4a7c15u;
     uint64_t h = n->bits + n->kind;
     h = (h ^ h >> 32) * odd + n->operation;
@@ -33,24 +33,26 @@ static size_t hash(const nevh__tape_node *n) {
     return (size_t)(h >> 16);
 }
 
-static bool same(const nevh__tape_node *x, const nevh__tape_node *y) {
+static bool tape_build_same(const nevh__tape_node *x,
+                            const nevh__tape_node *y) {
     return x->kind == y->kind && x->operation == y->operation && x->a == y->a &&
            x->b == y->b && x->bits == y->bits;
 }
 
 /* The place of a node in the table, or the free place for it. */
-static size_t place(const nevh__tape_builder *b, const nevh__tape_node *n) {
-    size_t mask = b->table_size - 1, i = hash(n) & mask;
-    while (b->table[i] >= 0 && !same(&b->nodes[b->table[i]], n))
+static size_t tape_build_place(const nevh__tape_builder *b,
+                               const nevh__tape_node *n) {
+    size_t mask = b->table_size - 1, i = tape_build_hash(n) & mask;
+    while (b->table[i] >= 0 && !tape_build_same(&b->nodes[b->table[i]], n))
         i = (i + 1) & mask;
     return i;
 }
 
 int nevh__builder_find(const nevh__tape_builder *b, const nevh__tape_node *n) {
-    return b->table[place(b, n)];
+    return b->table[tape_build_place(b, n)];
 }
 
-static bool grow(nevh__tape_builder *b) {
+static bool tape_build_grow(nevh__tape_builder *b) {
     if (b->capacity > INT_MAX / 4)
         return false;
     int capacity = b->capacity ? 2 * b->capacity : FIRST_CAPACITY;
@@ -68,18 +70,18 @@ static bool grow(nevh__tape_builder *b) {
     b->capacity = capacity;
     memset(table, 0xff, b->table_size * sizeof *table);
     for (int i = 0; i < b->used; i++)
-        table[place(b, &nodes[i])] = i;
+        table[tape_build_place(b, &nodes[i])] = i;
     return true;
 }
 
 int nevh__builder_node(nevh__tape_builder *b, nevh__tape_node node) {
     if (!b || b->failed)
         return -1;
-    if (b->used == b->capacity && !grow(b)) {
+    if (b->used == b->capacity && !tape_build_grow(b)) {
         b->failed = true;
         return -1;
     }
-    int *at = &b->table[place(b, &node)];
+    int *at = &b->table[tape_build_place(b, &node)];
     if (*at < 0) {
         b->nodes[b->used] = node;
         *at = b->used++;

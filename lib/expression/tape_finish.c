@@ -184,7 +184,7 @@ static void choose_slots(plan *p) {
     }
 }
 
-static nevh__tape_operand operand(const plan *p, int node) {
+static nevh__tape_operand tape_finish_operand(const plan *p, int node) {
     const nevh__tape_node *n = &p->from->nodes[node];
     const role *r = &p->roles[node];
     uint32_t at = n->kind == NEVH__SLOT     ? (uint32_t)r->slot
@@ -212,8 +212,8 @@ static nevh__instruction instruction(const plan *p, int node) {
     const nevh__tape_node *n = &p->from->nodes[node];
     const role *r = &p->roles[node];
     nevh__instruction made = {
-        .a = operand(p, n->a),
-        .b = operand(p, n->b),
+        .a = tape_finish_operand(p, n->a),
+        .b = tape_finish_operand(p, n->b),
         .to = (uint32_t)r->slot,
         .also = (uint32_t)r->slot,
         .operation = n->operation,
@@ -265,7 +265,7 @@ static void write_numbers(nevh__tape *tape, const plan *p) {
     tape->wide = wide;
 }
 
-static nevh__tape *allocate(const plan *p) {
+static nevh__tape *tape_finish_allocate(const plan *p) {
     size_t numbers = (size_t)p->numbers, all = 0, at = 0;
     const size_t *count = p->from->count;
     for (int v = 0; v < NEVH__VARIABLES; v++)
@@ -289,14 +289,14 @@ static nevh__tape *allocate(const plan *p) {
     return tape;
 }
 
-static nevh__tape *write(const plan *p, int result) {
-    nevh__tape *tape = allocate(p);
+static nevh__tape *tape_finish_write(const plan *p, int result) {
+    nevh__tape *tape = tape_finish_allocate(p);
     if (!tape)
         return NULL;
     tape->length = (size_t)p->length;
     tape->slots = (size_t)p->slots;
     tape->analytic = true;
-    tape->result = operand(p, result);
+    tape->result = tape_finish_operand(p, result);
     note_read(tape, tape->result);
     write_code(tape, p);
     write_numbers(tape, p);
@@ -311,7 +311,7 @@ static int finish(plan *p, int result, nevh__tape **tape) {
     choose_slots(p);
     if (p->slots > NEVH__TAPE_LIVE || p->length > NEVH__TAPE_LENGTH)
         return NEVH_EINVAL;
-    *tape = write(p, result);
+    *tape = tape_finish_write(p, result);
     return *tape ? NEVH_OK : NEVH_ENOMEM;
 }
 

@@ -83,7 +83,8 @@ static void run_back(const sweep *s, size_t from, size_t until, double *scratch,
     run_back(s, from, from + half, scratch, capacity);
 }
 
-static void clear(double d[], size_t rows, size_t width, size_t columns) {
+static void tape_gradient_clear(double d[], size_t rows, size_t width,
+                                size_t columns) {
     for (size_t k = 0; d && k < rows; k++)
         memset(d + k * width, 0, columns * sizeof *d);
 }
@@ -113,19 +114,21 @@ static void sweep_columns(const task *job, size_t from, size_t columns,
     s.base[NEVH__Q] = job->dh_dq ? job->dh_dq + from : NULL;
     s.base[NEVH__P] = job->dh_dp ? job->dh_dp + from : NULL;
     s.base[NEVH__SLOT] = scratch + slots;
-    clear(s.base[NEVH__T], 1, job->width, columns);
-    clear(s.base[NEVH__Q], tape->count[NEVH__Q], job->width, columns);
-    clear(s.base[NEVH__P], tape->count[NEVH__P], job->width, columns);
+    tape_gradient_clear(s.base[NEVH__T], 1, job->width, columns);
+    tape_gradient_clear(s.base[NEVH__Q], tape->count[NEVH__Q], job->width,
+                        columns);
+    tape_gradient_clear(s.base[NEVH__P], tape->count[NEVH__P], job->width,
+                        columns);
     run_back(&s, 0, tape->length, scratch + 2 * slots, capacity - 2 * slots);
 }
 
-static size_t smaller(size_t a, size_t b) {
+static size_t tape_gradient_smaller(size_t a, size_t b) {
     return a < b ? a : b;
 }
 
 /* Rows that the journal of so many operations takes at most. */
 static size_t longest_journal(const nevh__tape *tape, size_t length) {
-    return smaller(tape->code[tape->length].journal, 2 * length);
+    return tape_gradient_smaller(tape->code[tape->length].journal, 2 * length);
 }
 
 /* Doubles that `columns` columns take without halves. */

@@ -34,25 +34,26 @@ static bool copy_parts(const nevh__tape *from, size_t constants,
 }
 
 /* The constant that a number becomes. */
-static uint32_t place_of(const nevh__tape *from, const bool opened[],
-                         uint32_t number) {
+static uint32_t tape_open_place_of(const nevh__tape *from, const bool opened[],
+                                   uint32_t number) {
     uint32_t at = (uint32_t)from->count[NEVH__C];
     for (uint32_t i = 0; i < number; i++)
         at += opened[i];
     return at;
 }
 
-static void open(const nevh__tape *from, const bool opened[], nevh__tape *to,
-                 nevh__tape_operand *o) {
+static void tape_open_open(const nevh__tape *from, const bool opened[],
+                           nevh__tape *to, nevh__tape_operand *o) {
     if (o->kind != NEVH__NUMBER || !opened[o->at])
         return;
     o->kind = NEVH__C;
-    o->at = place_of(from, opened, o->at);
+    o->at = tape_open_place_of(from, opened, o->at);
     to->read[NEVH__C][o->at] = true;
 }
 
 nevh__tape *nevh__tape_open(const nevh__tape *from, const bool opened[]) {
-    size_t constants = place_of(from, opened, (uint32_t)from->n_numbers);
+    size_t constants =
+        tape_open_place_of(from, opened, (uint32_t)from->n_numbers);
     nevh__tape *to = nevh__copy(from, 1, sizeof *from);
     if (!to)
         return NULL;
@@ -63,10 +64,10 @@ nevh__tape *nevh__tape_open(const nevh__tape *from, const bool opened[]) {
         nevh__tape_free(to);
         return NULL;
     }
-    open(from, opened, to, &to->result);
+    tape_open_open(from, opened, to, &to->result);
     for (size_t i = 0; i < to->length; i++) {
-        open(from, opened, to, &to->code[i].a);
-        open(from, opened, to, &to->code[i].b);
+        tape_open_open(from, opened, to, &to->code[i].a);
+        tape_open_open(from, opened, to, &to->code[i].b);
     }
     return to;
 }

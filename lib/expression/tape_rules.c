@@ -7,7 +7,7 @@
 static const double most_multiplied = 8, most_rooted = 5;
 
 /* The bits count: -0 is not 0. */
-static bool is(const nevh__tape_builder *b, int node, double x) {
+static bool tape_rules_is(const nevh__tape_builder *b, int node, double x) {
     double y;
     return nevh__tape_is_number(b, node, &y) && y == x &&
            !signbit(y) == !signbit(x);
@@ -33,8 +33,8 @@ static bool is_multiple(const nevh__tape_builder *b, int node, double *c,
     return first || nevh__tape_is_number(b, n->b, c);
 }
 
-static int operation(nevh__tape_builder *b, nevh__tape_operation of, int x,
-                     int y) {
+static int tape_rules_operation(nevh__tape_builder *b, nevh__tape_operation of,
+                                int x, int y) {
     return nevh__builder_node(
         b, (nevh__tape_node){
                .kind = NEVH__SLOT, .operation = (uint8_t)of, .a = x, .b = y});
@@ -42,7 +42,8 @@ static int operation(nevh__tape_builder *b, nevh__tape_operation of, int x,
 
 static int commutative(nevh__tape_builder *b, nevh__tape_operation of, int x,
                        int y) {
-    return x < y ? operation(b, of, x, y) : operation(b, of, y, x);
+    return x < y ? tape_rules_operation(b, of, x, y)
+                 : tape_rules_operation(b, of, y, x);
 }
 
 /* The operand that an even function may take instead: z of abs(z). */
@@ -52,11 +53,11 @@ static int without_sign(const nevh__tape_builder *b, int node) {
     return is_size ? n->a : node;
 }
 
-static int add(nevh__tape_builder *b, int x, int y) {
+static int tape_rules_add(nevh__tape_builder *b, int x, int y) {
     int z;
-    if (is(b, y, -0.0))
+    if (tape_rules_is(b, y, -0.0))
         return x;
-    if (is(b, x, -0.0))
+    if (tape_rules_is(b, x, -0.0))
         return y;
     if (is_negated(b, y, &z))
         return nevh__tape_apply(b, NEVH__SUBTRACT, x, z);
@@ -65,15 +66,15 @@ static int add(nevh__tape_builder *b, int x, int y) {
     return commutative(b, NEVH__ADD, x, y);
 }
 
-static int subtract(nevh__tape_builder *b, int x, int y) {
+static int tape_rules_subtract(nevh__tape_builder *b, int x, int y) {
     int z;
-    if (is(b, y, 0.0))
+    if (tape_rules_is(b, y, 0.0))
         return x;
-    if (is(b, x, -0.0))
+    if (tape_rules_is(b, x, -0.0))
         return nevh__tape_apply(b, NEVH__NEGATE, y, y);
     if (is_negated(b, y, &z))
         return nevh__tape_apply(b, NEVH__ADD, x, z);
-    return operation(b, NEVH__SUBTRACT, x, y);
+    return tape_rules_operation(b, NEVH__SUBTRACT, x, y);
 }
 
 static int negate(nevh__tape_builder *b, int x) {
@@ -83,7 +84,7 @@ static int negate(nevh__tape_builder *b, int x) {
         return z;
     if (is_multiple(b, x, &c, &z))
         return nevh__tape_apply(b, NEVH__MULTIPLY, nevh__tape_number(b, -c), z);
-    return operation(b, NEVH__NEGATE, x, x);
+    return tape_rules_operation(b, NEVH__NEGATE, x, x);
 }
 
 /* y is not a number unless x is none. */
@@ -98,7 +99,7 @@ static int multiply_number(nevh__tape_builder *b, int number, double c, int y) {
     return commutative(b, NEVH__MULTIPLY, number, y);
 }
 
-static int multiply(nevh__tape_builder *b, int x, int y) {
+static int tape_rules_multiply(nevh__tape_builder *b, int x, int y) {
     int z, w;
     double c;
     if (nevh__tape_is_number(b, x, &c))
@@ -109,7 +110,7 @@ static int multiply(nevh__tape_builder *b, int x, int y) {
         return nevh__tape_apply(b, NEVH__MULTIPLY, z, w);
     if (x == y) {
         x = without_sign(b, x);
-        return operation(b, NEVH__SQUARE, x, x);
+        return tape_rules_operation(b, NEVH__SQUARE, x, x);
     }
     return commutative(b, NEVH__MULTIPLY, x, y);
 }
@@ -120,7 +121,7 @@ static bool is_power_of_two(double c) {
     return fabs(frexp(c, &exponent)) == 0.5 && isnormal(1 / c);
 }
 
-static int divide(nevh__tape_builder *b, int x, int y) {
+static int tape_rules_divide(nevh__tape_builder *b, int x, int y) {
     int z, w;
     double c;
     if (nevh__tape_is_number(b, y, &c) && is_power_of_two(c))
@@ -128,16 +129,16 @@ static int divide(nevh__tape_builder *b, int x, int y) {
                                 nevh__tape_number(b, 1 / c));
     if (is_negated(b, x, &z) && is_negated(b, y, &w))
         return nevh__tape_apply(b, NEVH__DIVIDE, z, w);
-    return operation(b, NEVH__DIVIDE, x, y);
+    return tape_rules_operation(b, NEVH__DIVIDE, x, y);
 }
 
 /* x^n, n > 0, by squaring. */
-static int multiplied(nevh__tape_builder *b, int x, int n) {
+static int tape_rules_multiplied(nevh__tape_builder *b, int x, int n) {
     if (n == 1)
         return x;
     if (n == 3)
         return nevh__tape_apply(b, NEVH__CUBE, x, x);
-    int most = multiplied(b, x, n % 2 ? n - 1 : n / 2);
+    int most = tape_rules_multiplied(b, x, n % 2 ? n - 1 : n / 2);
     return nevh__tape_apply(b, NEVH__MULTIPLY, n % 2 ? x : most, most);
 }
 
@@ -145,11 +146,12 @@ static int multiplied(nevh__tape_builder *b, int x, int n) {
 static int expanded(nevh__tape_builder *b, int x, double c) {
     int n = (int)c;
     if (c == n)
-        return multiplied(b, x, n);
+        return tape_rules_multiplied(b, x, n);
     int root = nevh__tape_apply(b, NEVH__SQRT, x, x);
     if (n == 0)
         return root;
-    return nevh__tape_apply(b, NEVH__MULTIPLY, multiplied(b, x, n), root);
+    return nevh__tape_apply(b, NEVH__MULTIPLY, tape_rules_multiplied(b, x, n),
+                            root);
 }
 
 static bool is_expandable(double c) {
@@ -157,14 +159,14 @@ static bool is_expandable(double c) {
            rint(2 * c) == 2 * c;
 }
 
-static int power(nevh__tape_builder *b, int x, int y) {
+static int tape_rules_power(nevh__tape_builder *b, int x, int y) {
     double c;
-    if (is(b, x, 1))
+    if (tape_rules_is(b, x, 1))
         return x;
     if (nevh__tape_is_number(b, y, &c) && fmod(c, 2) == 0)
         x = without_sign(b, x);
     if (!nevh__tape_is_number(b, y, &c) || !is_expandable(c))
-        return operation(b, NEVH__POWER, x, y);
+        return tape_rules_operation(b, NEVH__POWER, x, y);
     if (c == 0)
         return nevh__tape_number(b, 1);
     int up = expanded(b, x, fabs(c));
@@ -177,26 +179,27 @@ static int rewritten(nevh__tape_builder *b, nevh__tape_operation of, int x,
                      int y) {
     switch (of) {
     case NEVH__ADD:
-        return add(b, x, y);
+        return tape_rules_add(b, x, y);
     case NEVH__SUBTRACT:
-        return subtract(b, x, y);
+        return tape_rules_subtract(b, x, y);
     case NEVH__MULTIPLY:
-        return multiply(b, x, y);
+        return tape_rules_multiply(b, x, y);
     case NEVH__DIVIDE:
-        return divide(b, x, y);
+        return tape_rules_divide(b, x, y);
     case NEVH__POWER:
-        return power(b, x, y);
+        return tape_rules_power(b, x, y);
     case NEVH__NEGATE:
         return negate(b, x);
     case NEVH__ABS:
     case NEVH__COS:
     case NEVH__COSH:
         x = without_sign(b, x);
-        return operation(b, of, x, x);
+        return tape_rules_operation(b, of, x, x);
     case NEVH__HYPOT:
-        return operation(b, of, without_sign(b, x), without_sign(b, y));
+        return tape_rules_operation(b, of, without_sign(b, x),
+                                    without_sign(b, y));
     default:
-        return operation(b, of, x, y);
+        return tape_rules_operation(b, of, x, y);
     }
 }
 

@@ -40,7 +40,7 @@ static void take_frequency(nevh_timing *m, const stretch *c, size_t i) {
 }
 
 /* Evaluates the parts over an interval. */
-static stretch look(nevh_timing *m, double low, double high) {
+static stretch timing_look(nevh_timing *m, double low, double high) {
     nevh__time_parts *s = &m->parts;
     stretch c = {.low = low, .high = high};
     nevh__time_parts_over(s, low, high);
@@ -62,7 +62,7 @@ static stretch look(nevh_timing *m, double low, double high) {
     return c;
 }
 
-static bool keep(nevh_timing *m, stretch c) {
+static bool timing_keep(nevh_timing *m, stretch c) {
     if (m->cells == m->cell_capacity) {
         size_t capacity = 2 * m->cells + 256;
         stretch *grown = nevh__grow(m->cell, capacity, sizeof *grown);
@@ -84,7 +84,8 @@ static void values_at(nevh_timing *m, double t, double to[]) {
 }
 
 /* True if a term differs on either side of a break; effect: out. */
-static bool jumps(nevh_timing *m, double before, double after, size_t *effect) {
+static bool timing_jumps(nevh_timing *m, double before, double after,
+                         size_t *effect) {
     const nevh__time_parts *s = &m->parts;
     double most = certain_jump;
     values_at(m, before, m->before);
@@ -118,25 +119,25 @@ static void add_break(nevh_timing *m, const stretch *c) {
 /* A stretch with a break is halved until it is as short as can be; what has none
    is kept. */
 static void separate(nevh_timing *m, double low, double high) {
-    stretch c = look(m, low, high);
+    stretch c = timing_look(m, low, high);
     double middle = low + (high - low) / 2;
     if (m->failed)
         return;
     if (!c.broken) {
-        keep(m, c);
+        timing_keep(m, c);
         return;
     }
     if (high - low <= m->least) {
         c.rate = 0;
         add_break(m, &c);
-        keep(m, c);
+        timing_keep(m, c);
         return;
     }
     bool enough = m->halved > m->most_halved || m->n_breaks > MOST_BREAKS;
     m->whole &= !enough;
     m->halved++;
     if (enough) {
-        keep(m, c);
+        timing_keep(m, c);
         return;
     }
     separate(m, low, middle);
@@ -181,7 +182,7 @@ static void find_ranges_again(nevh_timing *m) {
     end_ranges(m);
     for (size_t k = 0; k < m->cells; k++)
         if (!m->cell[k].broken)
-            m->cell[k] = look(m, m->cell[k].low, m->cell[k].high);
+            m->cell[k] = timing_look(m, m->cell[k].low, m->cell[k].high);
 }
 
 static double need(const stretch *c) {
@@ -221,7 +222,7 @@ static void end_halving(nevh_timing *m, stretch *c) {
 
 /* Halves intervals over which terms change fast, compared with the interval's
    length. */
-static void halve(nevh_timing *m) {
+static void timing_halve(nevh_timing *m) {
     for (size_t i = m->cells; i-- > 0;)
         sink(m, i);
     for (m->halved = 0; m->halved < m->most_halved && m->cells; m->halved++) {
@@ -232,9 +233,9 @@ static void halve(nevh_timing *m) {
         if (c.high - c.low <= m->least) {
             end_halving(m, &m->cell[0]);
         } else {
-            m->cell[0] = look(m, c.low, middle);
+            m->cell[0] = timing_look(m, c.low, middle);
             sink(m, 0);
-            if (!keep(m, look(m, middle, c.high)))
+            if (!timing_keep(m, timing_look(m, middle, c.high)))
                 return;
             rise(m, m->cells - 1);
         }
@@ -337,7 +338,7 @@ static void describe_breaks(nevh_timing *m) {
     for (size_t i = 0; i < m->n_breaks; i++) {
         nevh_time_break *b = &m->breaks[i];
         effect = 0;
-        b->jump = !b->pole && jumps(m, b->before, b->after, &effect);
+        b->jump = !b->pole && timing_jumps(m, b->before, b->after, &effect);
         if (!b->jump)
             continue;
         b->effect = nevh_system_effect_name(m->parts.system, effect);
@@ -354,7 +355,7 @@ static void describe_breaks(nevh_timing *m) {
     }
 }
 
-static void make(nevh_timing *m) {
+static void timing_make(nevh_timing *m) {
     nevh__time_parts *s = &m->parts;
     size_t first = s->n_sampled ? FIRST_SAMPLED : FIRST;
     double limit = most_work / (double)(s->count + 1);
@@ -374,7 +375,7 @@ static void make(nevh_timing *m) {
     if (m->failed)
         return;
     find_ranges_again(m);
-    halve(m);
+    timing_halve(m);
     qsort(m->cell, m->cells, sizeof *m->cell, by_time);
     order_breaks(m);
     find_shortest(m);
@@ -397,7 +398,7 @@ nevh_timing *nevh_timing_new(const nevh_system *s, double t0, double t1,
     fenv_t own; /* as in nevh_stepper_new */
     feholdexcept(&own);
     if (!m->failed && m->parts.count && m->high > m->low)
-        make(m);
+        timing_make(m);
     fesetenv(&own);
     if (!m->failed)
         return m;

@@ -32,7 +32,7 @@ bool nevh_timing_whole(const nevh_timing *m) {
 }
 
 /* The stretch that holds a time. */
-static size_t find(const nevh_timing *m, double t) {
+static size_t timing_ask_find(const nevh_timing *m, double t) {
     size_t from = 0, until = m->cells;
     while (until - from > 1) {
         size_t middle = from + (until - from) / 2;
@@ -44,7 +44,7 @@ static size_t find(const nevh_timing *m, double t) {
 double nevh__timing_reach(const nevh_timing *m, double t) {
     if (!m || !m->cells)
         return INFINITY;
-    size_t i = find(m, t);
+    size_t i = timing_ask_find(m, t);
     const nevh__time_stretch *c = &m->cell[i];
     double from = fmax(t - c->low, 0), to = fmax(c->high - t, 0);
     return fmin(nevh__stretch_reach(c),
@@ -69,7 +69,7 @@ const nevh_time_break *nevh__timing_next(const nevh_timing *m, double t,
 double nevh__timing_edge(const nevh_timing *m, double t, bool forward) {
     if (!m || !m->cells)
         return forward ? INFINITY : -INFINITY;
-    size_t last = m->cells - 1, i = find(m, t);
+    size_t last = m->cells - 1, i = timing_ask_find(m, t);
     if (forward && t < m->cell[0].low)
         return m->cell[0].low;
     if (!forward && t > m->cell[last].high)
@@ -86,7 +86,7 @@ double nevh__timing_edge(const nevh_timing *m, double t, bool forward) {
 bool nevh__timing_is_fast(const nevh_timing *m, double from, double to) {
     static const double passed = 0.5; /* the reach, over the step */
     double low = fmin(from, to), high = fmax(from, to);
-    for (size_t i = m && m->cells ? find(m, low) : 0;
+    for (size_t i = m && m->cells ? timing_ask_find(m, low) : 0;
          m && i < m->cells && m->cell[i].low < high; i++)
         if (m->cell[i].high > low &&
             nevh__stretch_reach(&m->cell[i]) < passed * (high - low))

@@ -32,16 +32,16 @@ typedef struct {
     unsigned by;
 } slot;
 
-static slot number(parts *m, double x, unsigned by) {
+static slot timing_parts_number(parts *m, double x, unsigned by) {
     return (slot){nevh__tape_number(m->graph, x), by};
 }
 
 /* A coordinate or momentum: a number where the state stays. */
-static slot variable(parts *m, nevh__variable v, size_t k) {
+static slot timing_parts_variable(parts *m, nevh__variable v, size_t k) {
     unsigned by = v == NEVH__Q ? NEVH__BY_Q : NEVH__BY_P;
     if (m->to)
         return (slot){nevh__tape_variable(m->graph, v, k), by};
-    return number(m, v == NEVH__Q ? m->q[k] : m->p[k], by);
+    return timing_parts_number(m, v == NEVH__Q ? m->q[k] : m->p[k], by);
 }
 
 static slot operand_of(parts *m, const nevh_term *term, size_t instance,
@@ -51,19 +51,21 @@ static slot operand_of(parts *m, const nevh_term *term, size_t instance,
     case NEVH__T:
         return (slot){nevh__tape_variable(m->graph, NEVH__T, 0), NEVH__BY_T};
     case NEVH__Q:
-        return variable(m, NEVH__Q, term->q[instance * term->nq + o.at]);
+        return timing_parts_variable(m, NEVH__Q,
+                                     term->q[instance * term->nq + o.at]);
     case NEVH__P:
-        return variable(m, NEVH__P, term->p[instance * term->np + o.at]);
+        return timing_parts_variable(m, NEVH__P,
+                                     term->p[instance * term->np + o.at]);
     case NEVH__C:
-        return number(m, term->c[instance * term->nc + o.at], 0);
+        return timing_parts_number(m, term->c[instance * term->nc + o.at], 0);
     case NEVH__NUMBER:
-        return number(m, tape->numbers[o.at], 0);
+        return timing_parts_number(m, tape->numbers[o.at], 0);
     default:
         return slots[o.at];
     }
 }
 
-static void mark(parts *m, slot x, size_t effect, bool outer) {
+static void timing_parts_mark(parts *m, slot x, size_t effect, bool outer) {
     bool moves = m->to || x.by & NEVH__BY_T;
     part *s = x.node >= 0 && moves ? part_of(m, (size_t)x.node) : NULL;
     if (!s)
@@ -109,16 +111,17 @@ static void mark_like(parts *m, nevh__tape_operation f, slot a, slot b,
         int pure = pure_part(m, a.node);
         x = pure < 0 ? -1 : nevh__tape_apply(m->graph, f, pure, pure);
     }
-    mark(m, (slot){x, NEVH__BY_T}, effect, f == NEVH__DIVIDE);
+    timing_parts_mark(m, (slot){x, NEVH__BY_T}, effect, f == NEVH__DIVIDE);
 }
 
-static slot apply(parts *m, unsigned operation, slot a, slot b, size_t effect) {
+static slot timing_parts_apply(parts *m, unsigned operation, slot a, slot b,
+                               size_t effect) {
     nevh__tape_operation f = (nevh__tape_operation)operation;
     slot y = {nevh__tape_apply(m->graph, f, a.node, b.node), a.by | b.by};
     bool mixed = y.by & ~(unsigned)NEVH__BY_T;
-    mark(m, y, effect, false);
-    mark(m, a, effect, mixed);
-    mark(m, b, effect, mixed);
+    timing_parts_mark(m, y, effect, false);
+    timing_parts_mark(m, a, effect, mixed);
+    timing_parts_mark(m, b, effect, mixed);
     if (mixed && !m->to && y.by & NEVH__BY_T && y.node >= 0)
         mark_like(m, f, a, b, effect);
     if ((f == NEVH__SIN || f == NEVH__COS) && a.by & NEVH__BY_T && a.node >= 0)
@@ -135,14 +138,15 @@ static void read_instance(parts *m, const nevh__term_entry *entry,
         bool both = c->operation == NEVH__SINCOS;
         slot a = operand_of(m, term, instance, slots, c->a);
         slot b = operand_of(m, term, instance, slots, c->b);
-        slots[c->to] =
-            apply(m, both ? NEVH__SIN : c->operation, a, b, entry->effect);
+        slots[c->to] = timing_parts_apply(m, both ? NEVH__SIN : c->operation, a,
+                                          b, entry->effect);
         if (both)
-            slots[c->also] = apply(m, NEVH__COS, a, b, entry->effect);
+            slots[c->also] =
+                timing_parts_apply(m, NEVH__COS, a, b, entry->effect);
         m->failed |= m->graph->failed;
     }
-    mark(m, operand_of(m, term, instance, slots, tape->result), entry->effect,
-         true);
+    timing_parts_mark(m, operand_of(m, term, instance, slots, tape->result),
+                      entry->effect, true);
 }
 
 static void read_formula(parts *m, const nevh__term_entry *entry) {
@@ -212,8 +216,9 @@ void nevh__time_parts_clear(parts *m) {
     memset(m, 0, sizeof *m);
 }
 
-static double sample(const parts *m, const struct nevh__time_sampled *s,
-                     double t) {
+static double timing_parts_sample(const parts *m,
+                                  const struct nevh__time_sampled *s,
+                                  double t) {
     const nevh_term *term = s->term;
     double *q = m->gathered, *p = q + term->nq;
     for (size_t k = 0; k < term->nq; k++)
@@ -237,7 +242,7 @@ static nevh__range sampled_range(const parts *m,
                 ? 0
                 : 0.8 * (i * golden + low - floor(i * golden + low) - 0.5);
         double t = low + (high - low) * (i + off) / SAMPLES;
-        double h = sample(m, s, t), by = (h - last) / (t - before);
+        double h = timing_parts_sample(m, s, t), by = (h - last) / (t - before);
         r.low = fmin(r.low, h);
         r.high = fmax(r.high, h);
         if (t > before && isfinite(by)) {

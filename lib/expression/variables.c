@@ -10,7 +10,7 @@ typedef struct {
 } set;
 
 /* Collects variables; what has no memory is recorded as n = SIZE_MAX. */
-static bool add(set *s, uint64_t hash) {
+static bool variables_add(set *s, uint64_t hash) {
     if (s->n == s->capacity) {
         size_t capacity = s->capacity ? 2 * s->capacity : 16;
         uint64_t *grown = nevh__grow(s->hashes, capacity, sizeof *grown);
@@ -23,19 +23,19 @@ static bool add(set *s, uint64_t hash) {
     return true;
 }
 
-static bool collect(set *s, nevh__expression *e) {
+static bool variables_collect(set *s, nevh__expression *e) {
     bool fine = true;
     if (!e->reads || e->stamp == s->stamp)
         return true;
     e->stamp = s->stamp;
     if (e->form == NEVH__FORM_VARIABLE || e->form == NEVH__FORM_TIME)
-        return add(s, e->hash);
+        return variables_add(s, e->hash);
     for (size_t i = 0; fine && i < e->n; i++)
-        fine = collect(s, e->operands[i].of);
+        fine = variables_collect(s, e->operands[i].of);
     return fine;
 }
 
-static int compare(const void *a, const void *b) {
+static int variables_compare(const void *a, const void *b) {
     uint64_t left = *(const uint64_t *)a, right = *(const uint64_t *)b;
     return (left > right) - (left < right);
 }
@@ -45,9 +45,9 @@ bool nevh__variables_hash(nevh__parts *parts, const nevh__summand *s,
     set all = {.stamp = ++parts->stamp};
     bool fine = true;
     for (size_t i = 0; fine && i < s->n; i++)
-        fine = collect(&all, s->factors[i].of);
+        fine = variables_collect(&all, s->factors[i].of);
     if (all.n)
-        qsort(all.hashes, all.n, sizeof *all.hashes, compare);
+        qsort(all.hashes, all.n, sizeof *all.hashes, variables_compare);
     *hash = 0;
     for (size_t i = 0; i < all.n; i++)
         if (i == 0 || all.hashes[i] != all.hashes[i - 1])

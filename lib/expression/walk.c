@@ -7,7 +7,7 @@
 #include "expression/formula_inside_private.h"
 #include <stdlib.h>
 
-static int walk(nevh__walk *, nevh__expression *);
+static int walk_walk(nevh__walk *, nevh__expression *);
 
 static bool noting(const nevh__walk *w) {
     return !w->builder;
@@ -21,7 +21,7 @@ static int apply(nevh__walk *w, nevh__tape_operation operation, int a, int b) {
     return nevh__tape_apply(w->builder, operation, a, b);
 }
 
-static int number(nevh__walk *w, nevh__wide value) {
+static int walk_number(nevh__walk *w, nevh__wide value) {
     double part[NEVH__WIDE_PARTS];
     nevh__wide_split(value, part);
     int node = nevh__tape_number(w->builder, part[0]);
@@ -32,8 +32,8 @@ static int number(nevh__walk *w, nevh__wide value) {
 }
 
 /* Room for one more element; false when memory is out. */
-static bool reserve(nevh__walk *w, void *array, size_t count, size_t *capacity,
-                    size_t size) {
+static bool walk_reserve(nevh__walk *w, void *array, size_t count,
+                         size_t *capacity, size_t size) {
     if (count < *capacity)
         return true;
     size_t more = *capacity ? 2 * *capacity : 32;
@@ -46,7 +46,8 @@ static bool reserve(nevh__walk *w, void *array, size_t count, size_t *capacity,
 }
 
 static void note_shape(nevh__walk *w, size_t what) {
-    if (reserve(w, &w->shape, w->n_shape, &w->shape_capacity, sizeof *w->shape))
+    if (walk_reserve(w, &w->shape, w->n_shape, &w->shape_capacity,
+                     sizeof *w->shape))
         w->shape[w->n_shape++] = what;
 }
 
@@ -55,8 +56,8 @@ static void note_shape(nevh__walk *w, size_t what) {
 static void note_constant(nevh__walk *w, double value,
                           const nevh__expression *at) {
     nevh__scope_finite(&w->scope, value, at);
-    if (reserve(w, &w->constants, w->n_constants, &w->constants_capacity,
-                sizeof *w->constants))
+    if (walk_reserve(w, &w->constants, w->n_constants, &w->constants_capacity,
+                     sizeof *w->constants))
         w->constants[w->n_constants++] = value;
 }
 
@@ -69,7 +70,7 @@ static int constant(nevh__walk *w, double value, const nevh__expression *at) {
     size_t k = w->at_constant++;
     int column = w->columns ? w->columns[k] : -1;
     return column < 0
-               ? number(w, w->constants[k])
+               ? walk_number(w, w->constants[k])
                : nevh__tape_variable(w->builder, NEVH__C, (size_t)column);
 }
 
@@ -93,12 +94,12 @@ static int walk_constant(nevh__walk *w, const nevh__expression *e) {
         return constant(w, noting(w) ? nevh__expression_value(&w->scope, e) : 0,
                         e);
     nevh__scope_finite(&w->scope, e->number, e);
-    return number(w, w->exact ? e->wide_number : e->number);
+    return walk_number(w, w->exact ? e->wide_number : e->number);
 }
 
 /* Variables. */
 
-static size_t slot_of(nevh__walk *w, nevh__variable kind, size_t index) {
+static size_t walk_slot_of(nevh__walk *w, nevh__variable kind, size_t index) {
     int k = kind == NEVH__P;
     if (w->whole)
         return index;
@@ -116,7 +117,7 @@ static int walk_variable(nevh__walk *w, const nevh__expression *e) {
         return nevh__tape_variable(w->builder, e->kind,
                                    w->shape[w->at_shape++]);
     if (nevh__expression_element(&w->scope, e, &index))
-        note_shape(w, slot_of(w, e->kind, index));
+        note_shape(w, walk_slot_of(w, e->kind, index));
     return -1;
 }
 
@@ -153,14 +154,14 @@ static int walk_product(nevh__walk *w, bool negative,
         nevh__scope_finite(&w->scope, p.value, factors[i - 1].of);
     int node = -1;
     if (i == 0 && !factors[0].inverse)
-        node = walk(w, factors[i++].of);
+        node = walk_walk(w, factors[i++].of);
     else if (p.numbers)
-        node = number(w, p.value);
+        node = walk_number(w, p.value);
     else
         node = constant(w, p.value, factors[i - 1].of);
     bool negate = negative && p.used == 0 && !factors[0].inverse;
     for (; i < n && !failed(w); i++) {
-        int next = walk(w, factors[i].of);
+        int next = walk_walk(w, factors[i].of);
         node = apply(w, factors[i].inverse ? NEVH__DIVIDE : NEVH__MULTIPLY,
                      node, next);
     }
@@ -168,9 +169,9 @@ static int walk_product(nevh__walk *w, bool negative,
 }
 
 static int walk_sum(nevh__walk *w, const nevh__expression *e) {
-    int node = walk(w, e->operands[0].of);
+    int node = walk_walk(w, e->operands[0].of);
     for (size_t i = 1; i < e->n && !failed(w); i++) {
-        int next = walk(w, e->operands[i].of);
+        int next = walk_walk(w, e->operands[i].of);
         node = apply(w, e->operands[i].inverse ? NEVH__SUBTRACT : NEVH__ADD,
                      node, next);
     }
@@ -178,8 +179,8 @@ static int walk_sum(nevh__walk *w, const nevh__expression *e) {
 }
 
 static int walk_apply(nevh__walk *w, const nevh__expression *e) {
-    int a = walk(w, e->operands[0].of);
-    int b = e->n > 1 ? walk(w, e->operands[1].of) : a;
+    int a = walk_walk(w, e->operands[0].of);
+    int b = e->n > 1 ? walk_walk(w, e->operands[1].of) : a;
     return apply(w, e->operation, a, b);
 }
 
@@ -195,7 +196,7 @@ typedef struct {
 static bool unroll(void *context) {
     unrolled *sum = context;
     nevh__walk *w = sum->walk;
-    int next = walk(w, sum->body);
+    int next = walk_walk(w, sum->body);
     sum->node = sum->count ? apply(w, NEVH__ADD, sum->node, next) : next;
     sum->count++;
     return !failed(w);
@@ -213,7 +214,7 @@ static int walk_loop(nevh__walk *w, const nevh__expression *e) {
     size_t count = w->shape[w->at_shape++];
     while (sum.count < count && unroll(&sum))
         continue;
-    return count ? sum.node : number(w, 0);
+    return count ? sum.node : walk_number(w, 0);
 }
 
 static int walk_form(nevh__walk *w, const nevh__expression *e) {
@@ -238,7 +239,7 @@ static int walk_form(nevh__walk *w, const nevh__expression *e) {
     return walk_constant(w, e);
 }
 
-static int walk(nevh__walk *w, nevh__expression *e) {
+static int walk_walk(nevh__walk *w, nevh__expression *e) {
     if (failed(w))
         return -1;
     if (w->length++ == w->limit) {

@@ -21,7 +21,7 @@ static nevh__wide mod(nevh__wide x, nevh__wide y) {
 
 /* Complete integrals of the modulus k by the arithmetic-geometric mean [M.
    Abramowitz, I. A. Stegun, Handbook of Mathematical Functions, 17.6]. */
-static nevh__wide elliptic(nevh__wide k, bool second) {
+static nevh__wide wide_elliptic(nevh__wide k, bool second) {
     enum { MOST = 20 };
     nevh__wide a = 1, g = sqrtq((1 - k) * (1 + k)), sum = k * k / 2, power = 1;
     if (second && fabsq(k) == 1)
@@ -38,11 +38,11 @@ static nevh__wide elliptic(nevh__wide k, bool second) {
 }
 
 static nevh__wide elliptic_k(nevh__wide k) {
-    return elliptic(k, false);
+    return wide_elliptic(k, false);
 }
 
 static nevh__wide elliptic_e(nevh__wide k) {
-    return elliptic(k, true);
+    return wide_elliptic(k, true);
 }
 
 /* Newton's iteration from the double. */

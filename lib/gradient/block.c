@@ -93,7 +93,7 @@ static void fill_many(nevh_field *f, const nevh__planned *term,
     }
 }
 
-static size_t smaller(size_t a, size_t b) {
+static size_t block_smaller(size_t a, size_t b) {
     return a < b ? a : b;
 }
 
@@ -102,8 +102,8 @@ static size_t smaller(size_t a, size_t b) {
 static void set_size(const nevh_field *f, nevh__block *b, size_t total) {
     size_t lanes = b->until - b->lane, groups = total - b->group;
     if (groups * b->copies * lanes > f->capacity) {
-        lanes = smaller(f->capacity / b->copies, lanes);
-        groups = smaller(f->capacity / (b->copies * lanes), groups);
+        lanes = block_smaller(f->capacity / b->copies, lanes);
+        groups = block_smaller(f->capacity / (b->copies * lanes), groups);
     }
     b->lanes = lanes;
     b->groups = groups;
@@ -131,9 +131,9 @@ bool nevh__block_next(nevh_field *f, const nevh__planned *term,
 
 /* "t = 2, q[2] = 0.5": what a term reads in a column, as far as there is room. A
    kernel passes no time to a term that does not read it. */
-static void describe(const nevh_field *f, const nevh__planned *term,
-                     const nevh__block *b, size_t instance, size_t column,
-                     char *text, size_t size) {
+static void block_describe(const nevh_field *f, const nevh__planned *term,
+                           const nevh__block *b, size_t instance, size_t column,
+                           char *text, size_t size) {
     size_t at = 0;
     text[0] = '\0';
     if (term->term->decl.time)
@@ -170,7 +170,7 @@ int nevh__block_fail(nevh_field *f, const nevh__planned *term,
     size_t group = column % (b->groups * b->lanes) / b->lanes;
     size_t instance = (b->group + group) / b->per_instance;
     char where[240], which[80] = "";
-    describe(f, term, b, instance, column, where, sizeof where);
+    block_describe(f, term, b, instance, column, where, sizeof where);
     if (!f->system->names && (decl->count > 1 || b->width > 1))
         snprintf(which, sizeof which, " (instance %zu, lane %zu)", instance,
                  lane);
@@ -189,7 +189,7 @@ int nevh__block_fail(nevh_field *f, const nevh__planned *term,
 }
 
 /* True if all are finite: x - x is then 0, else NaN. */
-static bool all_finite(const double x[], size_t n) {
+static bool block_all_finite(const double x[], size_t n) {
     double sum = 0;
     for (size_t i = 0; i < n; i++)
         sum += x[i] - x[i];
@@ -208,7 +208,7 @@ void nevh__block_evaluate(nevh_field *f, nevh__planned *term,
 
 int nevh__block_check(nevh_field *f, const nevh__planned *term,
                       const nevh__block *b) {
-    if (all_finite(f->h, b->used))
+    if (block_all_finite(f->h, b->used))
         return NEVH_OK;
     size_t column = 0;
     while (column + 1 < b->used && isfinite(f->h[column]))

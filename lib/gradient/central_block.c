@@ -67,8 +67,10 @@ bool nevh__add_slopes(const nevh_gradient *g, size_t apart, size_t lanes,
 }
 
 /* The distance of a column from the orbit, and the variable in which it is largest. */
-static double reach_of(const nevh_field *f, const nevh__planned *term,
-                       const nevh__block *b, size_t column, size_t *variable) {
+static double central_block_reach_of(const nevh_field *f,
+                                     const nevh__planned *term,
+                                     const nevh__block *b, size_t column,
+                                     size_t *variable) {
     size_t lane = b->lane + column % b->lanes;
     size_t group = column % (b->groups * b->lanes) / b->lanes;
     size_t instance = (b->group + group) / b->per_instance;
@@ -130,7 +132,7 @@ int nevh__central_fail(nevh_field *f, nevh__planned *term, const nevh__block *b,
         size_t column = 0, moved = 0;
         while (column + 1 < b->used && isfinite(f->h[column]))
             column++;
-        double reach = reach_of(f, term, b, column, &moved);
+        double reach = central_block_reach_of(f, term, b, column, &moved);
         return nevh__fail_outside(f, term, b, column, instance, moved, reach);
     }
     char name[NEVH__VARIABLE], when[40] = "";
@@ -168,9 +170,9 @@ static const nevh_gradient *weights_of(const nevh_field *f, size_t pairs) {
 
 /* One lane: the groups take the place of lanes.  Weighted slopes of chords,
    whose widths stand as the values do. */
-NEVH_SIMD static bool find_slopes(const nevh_gradient *g, size_t groups,
-                                  const double *width, const double *h,
-                                  double *slope) {
+NEVH_SIMD static bool
+central_block_find_slopes(const nevh_gradient *g, size_t groups,
+                          const double *width, const double *h, double *slope) {
     int64_t bad = 0;
     for (size_t i = 0; i < groups; i++)
         slope[i] = 0;
@@ -209,7 +211,7 @@ static int difference_one(nevh_field *f, nevh__planned *term, nevh__block *b,
                     term->delta[at.instance * term->nv + k], width + i);
     }
     nevh__block_evaluate(f, term, b);
-    bool bad = find_slopes(g, b->groups, width, f->h, slope);
+    bool bad = central_block_find_slopes(g, b->groups, width, f->h, slope);
     at = nevh__first_group(b);
     for (size_t i = 0; i < b->groups; i++, nevh__next_group(b, &at)) {
         size_t k = s.vars[at.v];

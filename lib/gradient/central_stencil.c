@@ -259,8 +259,8 @@ static int fail_slope(nevh_field *f, const nevh__term_part *part,
 }
 
 /* Tells what is not finite: a value, or else the first such slope. */
-static int fail(nevh_field *f, const nevh__term_part *part,
-                const nevh__places *at, size_t lane) {
+static int central_stencil_fail(nevh_field *f, const nevh__term_part *part,
+                                const nevh__places *at, size_t lane) {
     const nevh__stencil *s = part->stencil;
     size_t column = 0, used = s->points * part->lanes;
     nevh__block b = nevh__block_over(at->width, at->t, at->q, at->p, 1, 1);
@@ -295,20 +295,22 @@ int nevh__central_stencil_run(const nevh__evaluation *e) {
         memset(e->at.dh_dp, 0, size);
     for (const nevh__term_part *x = e->terms; x < e->terms + e->count; x++) {
         if (e->width == 1 && !take_one(f, x, &e->at))
-            return fail(f, x, &e->at, 0);
+            return central_stencil_fail(f, x, &e->at, 0);
         bool vectors = x->lanes % NEVH__LANES == 0;
         for (size_t lane = 0; lane < e->width && e->width > 1; lane += x->lanes)
             if (!(vectors ? take_vectors : take_lanes)(f, x, &e->at, lane))
-                return fail(f, x, &e->at, lane);
+                return central_stencil_fail(f, x, &e->at, lane);
     }
     return NEVH_OK;
 }
 
 /* Any places: constants are filled where other lanes are asked for, or lanes
    have their own. */
-static const double *constants(const nevh_field *f, const nevh__planned *term,
-                               nevh__stencil *s, size_t width, size_t lane,
-                               size_t lanes, size_t stride) {
+static const double *central_stencil_constants(const nevh_field *f,
+                                               const nevh__planned *term,
+                                               nevh__stencil *s, size_t width,
+                                               size_t lane, size_t lanes,
+                                               size_t stride) {
     size_t size = term->term->decl.nc * stride;
     for (size_t i = 0; (s->lanes != lanes || f->lanes) && i < size; i++) {
         size_t point = i % stride / lanes;
@@ -349,12 +351,13 @@ int nevh__gradient_central(nevh_field *f, nevh__planned *term,
     for (size_t lane = 0; lane < at->width; lane += x.lanes) {
         x.lanes = at->width - lane < most ? at->width - lane : most;
         x.stride = nevh__padded(s->points * x.lanes);
-        x.c = constants(f, term, s, at->width, lane, x.lanes, x.stride);
+        x.c = central_stencil_constants(f, term, s, at->width, lane, x.lanes,
+                                        x.stride);
         bool finite = at->width == 1 && !f->lanes ? take_one(f, &x, at)
                       : x.lanes % NEVH__LANES     ? take_lanes(f, &x, at, lane)
                                               : take_vectors(f, &x, at, lane);
         if (!finite)
-            return fail(f, &x, at, lane);
+            return central_stencil_fail(f, &x, at, lane);
     }
     return NEVH_OK;
 }

@@ -11,8 +11,8 @@
 static const double step = 0x1p-332; /* 1e-100; dividing does not round */
 
 /* Gathers one column as complex numbers without imaginary parts. */
-static void gather(const nevh_field *f, const nevh__planned *term,
-                   const nevh__block *b, size_t column) {
+static void complex_gather(const nevh_field *f, const nevh__planned *term,
+                           const nevh__block *b, size_t column) {
     for (size_t j = 0; j < term->nv; j++) {
         f->one[2 * j] = nevh__row(f, b, j)[column];
         f->one[2 * j + 1] = 0;
@@ -51,7 +51,7 @@ int nevh__gradient_complex(nevh_field *f, nevh__planned *term,
     int status = NEVH_OK;
     while (!status && nevh__block_next(f, term, &b))
         for (size_t column = 0; !status && column < b.used; column++) {
-            gather(f, term, &b, column);
+            complex_gather(f, term, &b, column);
             term->values += end - first;
             for (size_t k = first; !status && k < end; k++)
                 status = add_column(f, term, &b, column, k,

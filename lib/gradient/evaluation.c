@@ -75,7 +75,8 @@ int nevh__field_terms(nevh_field *f, const nevh__places *at) {
     return status;
 }
 
-NEVH_SIMD static void add(size_t size, const double x[], double sum[]) {
+NEVH_SIMD static void evaluation_add(size_t size, const double x[],
+                                     double sum[]) {
     NEVH_LANES(i, size) {
         sum[i] += x[i];
     }
@@ -87,7 +88,8 @@ static void add_numbers(size_t size, const double x[], double sum[]) {
 }
 
 void nevh__evaluation_add(const nevh__term_part *x) {
-    void (*to)(size_t, const double *, double *) = x->point ? add_numbers : add;
+    void (*to)(size_t, const double *, double *) =
+        x->point ? add_numbers : evaluation_add;
     if (x->sum_q)
         to(x->size_q, x->dh_dq, x->sum_q);
     if (x->sum_p)
@@ -114,8 +116,8 @@ static size_t columns_of(const nevh__planned *term, const nevh__stencil *of) {
     return of ? nevh__stencil_points(of) : term->term->decl.count;
 }
 
-static void fill(const nevh_field *f, const nevh__planned *term,
-                 struct nevh__constants *c) {
+static void evaluation_fill(const nevh_field *f, const nevh__planned *term,
+                            struct nevh__constants *c) {
     size_t columns = columns_of(term, c->of), nc = term->term->decl.nc;
     size_t stride = nevh__padded(columns * c->width), size = nc * stride;
     for (size_t i = 0; i < c->blocks * size; i++) {
@@ -130,14 +132,14 @@ static void fill(const nevh_field *f, const nevh__planned *term,
 
 void nevh__constants_fill(const nevh_field *f, const nevh__planned *term) {
     for (struct nevh__constants *c = term->constants; c; c = c->next)
-        fill(f, term, c);
+        evaluation_fill(f, term, c);
 }
 
 void nevh__evaluation_refresh(const nevh__evaluation *e) {
     for (const nevh__term_part *x = e->terms; x < e->terms + e->count; x++)
         for (struct nevh__constants *c = x->term->constants; c; c = c->next)
             if (c->rows == x->c)
-                fill(e->field, x->term, c);
+                evaluation_fill(e->field, x->term, c);
 }
 
 const double *nevh__constants_plan(const nevh_field *f, nevh__planned *term,
@@ -159,7 +161,7 @@ const double *nevh__constants_plan(const nevh_field *f, nevh__planned *term,
     c->width = width;
     c->blocks = blocks;
     term->constants = c;
-    fill(f, term, c);
+    evaluation_fill(f, term, c);
     return c->rows;
 }
 
@@ -201,22 +203,23 @@ void nevh__single_free(struct nevh__single *s) {
 }
 
 /* Stores in parts are slow to load as a vector. */
-NEVH_SIMD static void repeat(size_t count, const double from[], double to[]) {
+NEVH_SIMD static void evaluation_repeat(size_t count, const double from[],
+                                        double to[]) {
     nevh__broadcast(count, from, to);
 }
 
-static void load(size_t width, size_t count, const double from[],
-                 const double to[]) {
+static void evaluation_load(size_t width, size_t count, const double from[],
+                            const double to[]) {
     if (width > 1)
-        repeat(count, from, (double *)to);
+        evaluation_repeat(count, from, (double *)to);
     else
         for (size_t k = 0; k < count; k++)
             ((double *)to)[k] = from[k];
 }
 
 /* As if added to 0; returns the sum of x - x. */
-static double store(size_t width, size_t count, const double from[],
-                    double to[]) {
+static double evaluation_store(size_t width, size_t count, const double from[],
+                               double to[]) {
     double sum = 0;
     for (size_t k = 0; to && k < count; k++, from += width) {
         to[k] = 0 + *from;
@@ -231,12 +234,12 @@ static bool take_single(nevh_field *f, const nevh__places *at) {
         f->single ? &f->single->of[nevh__part_of(at)] : NULL;
     if (!e || !e->count || (!at->dh_dq && !at->dh_dp))
         return false;
-    load(e->width, 1, at->t, e->at.t);
-    load(e->width, f->n, at->q, e->at.q);
-    load(e->width, f->n, at->p, e->at.p);
+    evaluation_load(e->width, 1, at->t, e->at.t);
+    evaluation_load(e->width, f->n, at->q, e->at.q);
+    evaluation_load(e->width, f->n, at->p, e->at.p);
     nevh__evaluation_run(e);
-    return store(e->width, f->n, e->at.dh_dq, at->dh_dq) +
-               store(e->width, f->n, e->at.dh_dp, at->dh_dp) ==
+    return evaluation_store(e->width, f->n, e->at.dh_dq, at->dh_dq) +
+               evaluation_store(e->width, f->n, e->at.dh_dp, at->dh_dp) ==
            0;
 }
 

@@ -27,7 +27,7 @@ bool nevh__exact_block_broadcasts(const nevh_field *f) {
     return f->n <= MOST_ROWS;
 }
 
-static bool applicable(const nevh__evaluation *e) {
+static bool exact_block_applicable(const nevh__evaluation *e) {
     const nevh_field *f = e->field;
     if (f->gradient != nevh_exact)
         return false; /* terms need not bring derivatives */
@@ -49,7 +49,8 @@ static bool applicable(const nevh__evaluation *e) {
 }
 
 /* All of a half stands for its rows where these are too many for bits. */
-static uint64_t rows_of(const nevh__evaluation *e, size_t first, size_t count) {
+static uint64_t exact_block_rows_of(const nevh__evaluation *e, size_t first,
+                                    size_t count) {
     return e->field->n > NEVH__MOST_POINT_ROWS ? UINT64_MAX
                                                : nevh__row_bits(first, count);
 }
@@ -57,10 +58,11 @@ static uint64_t rows_of(const nevh__evaluation *e, size_t first, size_t count) {
 /* Chooses where a part writes one half of the gradient: in place if no part has
    written there, else beside it, to be added.  False if parts have written only
    some of its rows. */
-static bool direct(const nevh__evaluation *e, size_t first, size_t size,
-                   uint64_t *there, double *half, double *beside,
-                   double **written, double **sum) {
-    uint64_t here = rows_of(e, first, size / e->width), met = *there & here;
+static bool exact_block_direct(const nevh__evaluation *e, size_t first,
+                               size_t size, uint64_t *there, double *half,
+                               double *beside, double **written, double **sum) {
+    uint64_t here = exact_block_rows_of(e, first, size / e->width),
+             met = *there & here;
     *written = met ? beside : half + first * e->width;
     *sum = met ? half + first * e->width : NULL;
     *there |= here;
@@ -68,8 +70,8 @@ static bool direct(const nevh__evaluation *e, size_t first, size_t size,
     return met ? met == here : counted || size == e->field->n * e->width;
 }
 
-static bool add_part(nevh__evaluation *e, nevh__planned *term,
-                     uint64_t there[2]) {
+static bool exact_block_add_part(nevh__evaluation *e, nevh__planned *term,
+                                 uint64_t there[2]) {
     nevh_field *f = e->field;
     const nevh_term *decl = &term->term->decl;
     size_t width = e->width, stride = decl->count * width;
@@ -91,26 +93,29 @@ static bool add_part(nevh__evaluation *e, nevh__planned *term,
     e->timed |= decl->time;
     if (e->at.dh_dq && term->nq) {
         x->size_q = stride * term->nq;
-        known &= direct(e, decl->q[0], x->size_q, &there[0], e->at.dh_dq,
-                        f->slopes, &x->dh_dq, &x->sum_q);
+        known &=
+            exact_block_direct(e, decl->q[0], x->size_q, &there[0], e->at.dh_dq,
+                               f->slopes, &x->dh_dq, &x->sum_q);
     }
     if (e->at.dh_dp && term->np) {
         x->size_p = stride * term->np;
-        known &= direct(e, decl->p[0], x->size_p, &there[1], e->at.dh_dp,
-                        slopes_p, &x->dh_dp, &x->sum_p);
+        known &=
+            exact_block_direct(e, decl->p[0], x->size_p, &there[1], e->at.dh_dp,
+                               slopes_p, &x->dh_dp, &x->sum_p);
     }
     x->sums = x->sum_q || x->sum_p;
     return known;
 }
 
-static bool plan(nevh__evaluation *e) {
+static bool exact_block_plan(nevh__evaluation *e) {
     nevh_field *f = e->field;
-    uint64_t there[2] = {0, 0}, all = rows_of(e, 0, f->n);
+    uint64_t there[2] = {0, 0}, all = exact_block_rows_of(e, 0, f->n);
     for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++)
-        if (nevh__wanted(&e->at, term) && !add_part(e, term, there))
+        if (nevh__wanted(&e->at, term) && !exact_block_add_part(e, term, there))
             return false;
     return (!e->at.dh_dq || there[0] == all) &&
            (!e->at.dh_dp || there[1] == all);
 }
 
-const nevh__evaluator nevh__exact_block = {applicable, plan};
+const nevh__evaluator nevh__exact_block = {exact_block_applicable,
+                                           exact_block_plan};

@@ -11,7 +11,7 @@
 #include <string.h>
 
 /* Terms that do not fit into one block need no maps. */
-static bool plan_term(const nevh_field *f, nevh__planned *term) {
+static bool exact_gather_plan_term(const nevh_field *f, nevh__planned *term) {
     const nevh_term *decl = &term->term->decl;
     size_t constants = decl->nc * f->capacity;
     nevh__pairs pairs;
@@ -32,7 +32,7 @@ static bool plan_term(const nevh_field *f, nevh__planned *term) {
 bool nevh__exact_gather_plan(nevh_field *f) {
     bool q = false, p = false; /* whether a term has a share in them */
     for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++) {
-        if (!plan_term(f, term))
+        if (!exact_gather_plan_term(f, term))
             return false;
         size_t count = term->term->decl.count;
         if (!q && term->to_q.contiguous && term->nq * count == f->n)
@@ -46,8 +46,10 @@ bool nevh__exact_gather_plan(nevh_field *f) {
 }
 
 /* The constants of the last width are kept. */
-static inline const double *constants(const nevh_field *f, nevh__planned *term,
-                                      size_t width, size_t stride) {
+static inline const double *exact_gather_constants(const nevh_field *f,
+                                                   nevh__planned *term,
+                                                   size_t width,
+                                                   size_t stride) {
     const nevh_term *decl = &term->term->decl;
     size_t used = decl->count * width;
     if (term->gathered_width != width)
@@ -60,8 +62,10 @@ static inline const double *constants(const nevh_field *f, nevh__planned *term,
     return term->gathered;
 }
 
-static inline const double *times(nevh_field *f, const nevh_term *decl,
-                                  const nevh__places *at, size_t stride) {
+static inline const double *exact_gather_times(nevh_field *f,
+                                               const nevh_term *decl,
+                                               const nevh__places *at,
+                                               size_t stride) {
     size_t used = decl->count * at->width;
     if (!decl->time)
         return f->zeros;
@@ -83,7 +87,7 @@ static inline const double *rows(const nevh__scatter_map *map, size_t width,
 }
 
 /* 1: a number is not finite; 2: one is -0; or both. */
-NEVH_SIMD static int64_t check(size_t size, const double x[]) {
+NEVH_SIMD static int64_t exact_gather_check(size_t size, const double x[]) {
     int64_t found[NEVH__LANES], all = 0;
     NEVH_LANES(lane, NEVH__LANES) {
         found[lane] = 0;
@@ -103,11 +107,12 @@ NEVH_SIMD static int64_t check(size_t size, const double x[]) {
 
 /* Adds slopes, or leaves those that were written in place as if they had been
    added to 0; whether all are finite. */
-static inline bool add(const nevh__scatter_map *map, size_t width,
-                       size_t stride, const double from[], double out[]) {
+static inline bool exact_gather_add(const nevh__scatter_map *map, size_t width,
+                                    size_t stride, const double from[],
+                                    double out[]) {
     if (from != out)
         return nevh__scatter(map, width, stride, from, out);
-    int64_t found = check(map->rows * stride, out);
+    int64_t found = exact_gather_check(map->rows * stride, out);
     for (size_t i = 0; found & 2 && i < map->rows * stride; i++)
         out[i] += 0;
     return !(found & 1);
@@ -135,12 +140,14 @@ static inline bool take_block(nevh_field *f, nevh__planned *term,
         slopes_q = at->dh_dq;
     if (of_p && in_place && term == f->whole_p)
         slopes_p = at->dh_dp;
-    nevh__exact_gradient(f, decl)(stride, times(f, decl, at, stride), q, p,
-                                  constants(f, term, width, stride),
-                                  decl->params, at->dh_dq ? slopes_q : NULL,
-                                  at->dh_dp ? slopes_p : NULL);
-    bool finite = !of_q || add(&term->to_q, width, stride, slopes_q, at->dh_dq);
-    return (!of_p || add(&term->to_p, width, stride, slopes_p, at->dh_dp)) &&
+    nevh__exact_gradient(f, decl)(
+        stride, exact_gather_times(f, decl, at, stride), q, p,
+        exact_gather_constants(f, term, width, stride), decl->params,
+        at->dh_dq ? slopes_q : NULL, at->dh_dp ? slopes_p : NULL);
+    bool finite = !of_q || exact_gather_add(&term->to_q, width, stride,
+                                            slopes_q, at->dh_dq);
+    return (!of_p || exact_gather_add(&term->to_p, width, stride, slopes_p,
+                                      at->dh_dp)) &&
            finite;
 }
 
@@ -161,8 +168,8 @@ static bool add_groups(const nevh__planned *term, const nevh__block *b,
     return bad == 0;
 }
 
-static int fail(nevh_field *f, const nevh__planned *term, const nevh__block *b,
-                const double *row) {
+static int exact_gather_fail(nevh_field *f, const nevh__planned *term,
+                             const nevh__block *b, const double *row) {
     size_t column = 0;
     while (column + 1 < b->used && isfinite(row[column]))
         column++;
@@ -171,8 +178,9 @@ static int fail(nevh_field *f, const nevh__planned *term, const nevh__block *b,
 }
 
 /* A block of some instances, or lanes. */
-static int take_part(nevh_field *f, nevh__planned *term, const nevh__block *b,
-                     const nevh__places *at) {
+static int exact_gather_take_part(nevh_field *f, nevh__planned *term,
+                                  const nevh__block *b,
+                                  const nevh__places *at) {
     const nevh_term *decl = &term->term->decl;
     const double *q = f->rows, *p = q + term->nq * b->stride;
     const double *c = p + term->np * b->stride;
@@ -188,7 +196,7 @@ static int take_part(nevh_field *f, nevh__planned *term, const nevh__block *b,
             const double *row = f->slopes + k * b->stride;
             if (!add_groups(term, b, k, from, from + each, row,
                             k < term->nq ? at->dh_dq : at->dh_dp))
-                return fail(f, term, b, row);
+                return exact_gather_fail(f, term, b, row);
         }
     return NEVH_OK;
 }
@@ -198,7 +206,7 @@ static int take_parts(nevh_field *f, nevh__planned *term,
     nevh__block b = nevh__block_over(at->width, at->t, at->q, at->p, 1, 1);
     int status = NEVH_OK;
     while (!status && nevh__block_next(f, term, &b))
-        status = take_part(f, term, &b, at);
+        status = exact_gather_take_part(f, term, &b, at);
     return status;
 }
 

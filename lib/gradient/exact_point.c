@@ -5,7 +5,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/evaluation_private.h"
 
-static bool applicable(const nevh__evaluation *e) {
+static bool exact_point_applicable(const nevh__evaluation *e) {
     const nevh_field *f = e->field;
     if (f->gradient != nevh_exact)
         return false; /* terms need not bring derivatives */
@@ -24,8 +24,8 @@ static bool applicable(const nevh__evaluation *e) {
 
 /* One half of what an instance gives: written if nothing is there, added if
    something is everywhere, and else there is no way. */
-static bool direct(uint64_t *there, uint64_t here, double *half, double *beside,
-                   double **written, double **sum) {
+static bool exact_point_direct(uint64_t *there, uint64_t here, double *half,
+                               double *beside, double **written, double **sum) {
     uint64_t met = *there & here;
     *sum = met ? half : NULL;
     *written = met ? beside : half;
@@ -33,8 +33,8 @@ static bool direct(uint64_t *there, uint64_t here, double *half, double *beside,
     return !met || met == here;
 }
 
-static bool add_part(nevh__evaluation *e, nevh__planned *term, size_t instance,
-                     uint64_t there[2]) {
+static bool exact_point_add_part(nevh__evaluation *e, nevh__planned *term,
+                                 size_t instance, uint64_t there[2]) {
     const nevh_term *decl = &term->term->decl;
     const size_t *all_q = decl->q + instance * term->nq;
     const size_t *all_p = decl->p + instance * term->np;
@@ -57,27 +57,29 @@ static bool add_part(nevh__evaluation *e, nevh__planned *term, size_t instance,
     double *beside = e->field->slopes;
     bool known = true;
     if (x->size_q)
-        known &= direct(&there[0], nevh__row_bits(q, x->size_q),
-                        e->at.dh_dq + q, beside, &x->dh_dq, &x->sum_q);
-    if (x->size_p)
         known &=
-            direct(&there[1], nevh__row_bits(p, x->size_p), e->at.dh_dp + p,
-                   beside + term->nq, &x->dh_dp, &x->sum_p);
+            exact_point_direct(&there[0], nevh__row_bits(q, x->size_q),
+                               e->at.dh_dq + q, beside, &x->dh_dq, &x->sum_q);
+    if (x->size_p)
+        known &= exact_point_direct(&there[1], nevh__row_bits(p, x->size_p),
+                                    e->at.dh_dp + p, beside + term->nq,
+                                    &x->dh_dp, &x->sum_p);
     x->sums = x->sum_q || x->sum_p;
     e->timed |= decl->time;
     return known;
 }
 
-static bool plan(nevh__evaluation *e) {
+static bool exact_point_plan(nevh__evaluation *e) {
     nevh_field *f = e->field;
     uint64_t there[2] = {0, 0}, all = nevh__row_bits(0, f->n);
     for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++)
         for (size_t i = 0;
              nevh__wanted(&e->at, term) && i < term->term->decl.count; i++)
-            if (!add_part(e, term, i, there))
+            if (!exact_point_add_part(e, term, i, there))
                 return false;
     return (!e->at.dh_dq || there[0] == all) &&
            (!e->at.dh_dp || there[1] == all);
 }
 
-const nevh__evaluator nevh__exact_point = {applicable, plan};
+const nevh__evaluator nevh__exact_point = {exact_point_applicable,
+                                           exact_point_plan};

@@ -29,8 +29,8 @@ static bool can_differ(const nevh_field *f) {
     return can;
 }
 
-static void repeat(size_t count, size_t lanes, const double from[],
-                   double rows[]) {
+static void field_lanes_repeat(size_t count, size_t lanes, const double from[],
+                               double rows[]) {
     for (size_t i = 0; i < count * lanes; i++)
         rows[i] = from[i / lanes];
 }
@@ -41,18 +41,18 @@ static void rest(const nevh__planned *term, nevh__stencil *s) {
         s->shift[i] = -0.0;
 }
 
-static bool plan_term(nevh__planned *term, size_t lanes) {
+static bool field_lanes_plan_term(nevh__planned *term, size_t lanes) {
     const nevh_term *decl = &term->term->decl;
     size_t constants = decl->count * decl->nc, steps = decl->count * term->nv;
     term->lane_c = nevh__array(constants * lanes, sizeof *term->lane_c);
     term->lane_delta = nevh__array(steps * lanes, sizeof *term->lane_delta);
     if (!term->lane_c || !term->lane_delta)
         return false;
-    repeat(constants, lanes, decl->c, term->lane_c);
+    field_lanes_repeat(constants, lanes, decl->c, term->lane_c);
     for (size_t part = 0; term->delta && part < 3; part++)
         rest(term, term->stencil[part]);
     if (term->delta)
-        repeat(steps, lanes, term->delta, term->lane_delta);
+        field_lanes_repeat(steps, lanes, term->delta, term->lane_delta);
     return true;
 }
 
@@ -67,7 +67,7 @@ int nevh__field_lanes_plan(nevh_field *f, size_t lanes) {
         return nevh__fail(&f->report, NEVH_ESTRUCT,
                           "lanes cannot have constants of their own");
     for (size_t i = 0; i < f->n_terms; i++)
-        if (!plan_term(&f->terms[i], lanes))
+        if (!field_lanes_plan_term(&f->terms[i], lanes))
             return nevh__no_memory(&f->report);
     f->chosen = nevh__array(lanes, sizeof *f->chosen);
     f->lane_scale = nevh__array(2 * f->n * lanes, sizeof *f->lane_scale);
@@ -99,8 +99,8 @@ static void fill_again(nevh_field *f) {
     }
 }
 
-static void put(size_t count, size_t lanes, size_t lane, const double from[],
-                double rows[]) {
+static void field_lanes_put(size_t count, size_t lanes, size_t lane,
+                            const double from[], double rows[]) {
     for (size_t i = 0; i < count; i++)
         rows[i * lanes + lane] = from[i];
 }
@@ -112,13 +112,14 @@ bool nevh__field_lane_take(nevh_field *f, size_t lane, const double *const c[],
     for (size_t i = 0; i < f->n_terms; i++) {
         nevh__planned *term = &f->terms[i];
         const nevh_term *decl = &term->term->decl;
-        put(decl->count * decl->nc, f->lanes, lane, c[i], term->lane_c);
+        field_lanes_put(decl->count * decl->nc, f->lanes, lane, c[i],
+                        term->lane_c);
         if (own && term->delta)
-            put(decl->count * term->nv, f->lanes, lane, own->terms[i].delta,
-                term->lane_delta);
+            field_lanes_put(decl->count * term->nv, f->lanes, lane,
+                            own->terms[i].delta, term->lane_delta);
     }
     if (own && own->scale)
-        put(2 * f->n, f->lanes, lane, own->scale, f->lane_scale);
+        field_lanes_put(2 * f->n, f->lanes, lane, own->scale, f->lane_scale);
     fill_again(f);
     return true;
 }

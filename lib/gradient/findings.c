@@ -184,7 +184,7 @@ static bool reads_time(const nevh_system *s) {
     return !(nevh_system_traits(s) & NEVH_AUTONOMOUS);
 }
 
-static int ask(nevh_probe *b) {
+static int findings_ask(nevh_probe *b) {
     for (nevh_question i = 0; i < NEVH_FINDINGS; i++)
         b->finding[i].limit = roundings;
     for (size_t at = 0; at < b->selection.samples.count; at++) {
@@ -229,7 +229,7 @@ static int open_probe(nevh_probe *b, const nevh_system *s) {
     if (nevh__step_selection_init(&b->selection, b->field, &b->options) ||
         !nevh__find_samples(&b->selection))
         return nevh__no_memory(&b->report);
-    return ask(b);
+    return findings_ask(b);
 }
 
 nevh_probe *nevh_probe_new(const nevh_system *s, const nevh_options *options) {

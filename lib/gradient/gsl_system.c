@@ -17,14 +17,14 @@ static int right_hand_side(double t, const double y[], double dydt[],
     return GSL_SUCCESS;
 }
 
-static double step(double x, double scale) {
+static double gsl_system_step(double x, double scale) {
     return exp2(round(log2(cbrt(DBL_EPSILON) * fmax(fabs(x), scale))));
 }
 
 static int column(nevh_field *f, double t, double y[], size_t j, double *dfdy) {
     size_t m = 2 * f->n;
     double *plus = y + m, *minus = plus + m, x = y[j];
-    double h = step(x, f->scale[j]), above = x + h, below = x - h;
+    double h = gsl_system_step(x, f->scale[j]), above = x + h, below = x - h;
     y[j] = above;
     int status = right_hand_side(t, y, plus, f);
     y[j] = below;
@@ -39,7 +39,7 @@ static int column(nevh_field *f, double t, double y[], size_t j, double *dfdy) {
 static int time_derivative(nevh_field *f, double t, const double y[],
                            double dfdt[]) {
     size_t m = 2 * f->n;
-    double *minus = f->jacobian + m, h = step(t, 1);
+    double *minus = f->jacobian + m, h = gsl_system_step(t, 1);
     int status = right_hand_side(t + h, y, dfdt, f);
     if (!status)
         status = right_hand_side(t - h, y, minus, f);

@@ -24,8 +24,8 @@ enum { MOST_LANES = 4, TRIED_LANES = 64 };
 static const double askew = 0.618;
 
 /* A row of equal numbers, its first ones moved. */
-static void fill(double *row, size_t stride, double value, size_t count,
-                 const double move[]) {
+static void lengths_fill(double *row, size_t stride, double value, size_t count,
+                         const double move[]) {
     for (size_t i = 0; i < count; i++)
         row[i] = value + move[i];
     for (size_t i = count; i < stride; i++)
@@ -45,10 +45,10 @@ void nevh__sample_line(const nevh__axis *a, size_t at, size_t count,
                            ? decl->c[a->instance * decl->nc + j - term->nv]
                        : j < term->nq ? q[nevh__index(term, a->instance, j)]
                                       : p[nevh__index(term, a->instance, j)];
-        fill(row, stride, value, j == a->k ? count : 0, move);
+        lengths_fill(row, stride, value, j == a->k ? count : 0, move);
     }
-    fill(f->times, stride, a->e->samples.t[at], a->k == NEVH__TIME ? count : 0,
-         move);
+    lengths_fill(f->times, stride, a->e->samples.t[at],
+                 a->k == NEVH__TIME ? count : 0, move);
     double *rows_p = f->rows + term->nq * stride;
     nevh__term_values(term->term, f->portable, stride, count,
                       decl->time ? f->times : f->zeros, f->rows, rows_p,
@@ -84,22 +84,22 @@ typedef struct {
 } variation;
 
 /* A number that is not one is no larger. */
-static inline double larger(double a, double b) {
+static inline double lengths_larger(double a, double b) {
     return b > a ? b : a;
 }
 
 /* h: at a place, and on both sides of it at half the distance and at all. */
-static variation compare(double here, const double half[2],
-                         const double all[2]) {
-    double most =
-        larger(fabs(here), larger(larger(fabs(half[0]), fabs(half[1])),
-                                  larger(fabs(all[0]), fabs(all[1]))));
+static variation lengths_compare(double here, const double half[2],
+                                 const double all[2]) {
+    double most = lengths_larger(
+        fabs(here), lengths_larger(lengths_larger(fabs(half[0]), fabs(half[1])),
+                                   lengths_larger(fabs(all[0]), fabs(all[1]))));
     double even = (all[0] - here) + (all[1] - here), odd = all[0] - all[1];
     double near_even = (half[0] - here) + (half[1] - here);
     double near_odd = half[0] - half[1];
     return (variation){
-        larger(fabs(all[0] - here), fabs(all[1] - here)),
-        larger(fabs(even - 4 * near_even), fabs(odd - 2 * near_odd)),
+        lengths_larger(fabs(all[0] - here), fabs(all[1] - here)),
+        lengths_larger(fabs(even - 4 * near_even), fabs(odd - 2 * near_odd)),
         32 * DBL_EPSILON * most};
 }
 
@@ -115,7 +115,8 @@ static void allow_for_rounding(const nevh__axis *a, double distance,
     const double moves[] = {0, distance, -distance};
     double most = 0;
     for (size_t i = 0; i < 3; i++)
-        most = larger(most, nevh__sample_rounding(a, a->e->at, moves[i], h[i]));
+        most = lengths_larger(
+            most, nevh__sample_rounding(a, a->e->at, moves[i], h[i]));
     if (isfinite(most) && isfinite(v->whole))
         v->rounding = fmax(v->rounding, 16 * most);
 }
@@ -133,7 +134,7 @@ static void vary_on(const nevh__axis *a, double distance, size_t count,
     nevh__sample_line(a, a->e->at, 3 + 2 * count, move, x, h);
     for (size_t i = 0; i < count; i++, distance *= 2) {
         const double outer[] = {h[0], h[3 + 2 * i], h[4 + 2 * i]};
-        v[i] = compare(h[0], h + 1 + 2 * i, h + 3 + 2 * i);
+        v[i] = lengths_compare(h[0], h + 1 + 2 * i, h + 3 + 2 * i);
         if (too_far(&v[i]))
             allow_for_rounding(a, distance, outer, &v[i]);
     }
@@ -147,7 +148,7 @@ static variation vary(const nevh__axis *a, double distance) {
 
 /* A power of the distance has no length: its parts stay the same.  Of what has
    settled far away, as 1/r has, both are the same. */
-static bool alike(const variation *a, const variation *b) {
+static bool lengths_alike(const variation *a, const variation *b) {
     double share = b->rest / b->whole, noise = b->rounding / b->whole;
     return fabs(a->rest / a->whole - share) <= 1e-9 * share + noise &&
            noise < 0.1 && !(fabs(a->whole - b->whole) <= 0.1 * b->whole);
@@ -187,7 +188,7 @@ static bool leap_down(const nevh__axis *a, double *distance, int *leaps) {
         ++*leaps;
         *distance = ldexp(*distance, -LEAP);
         v = vary(a, *distance);
-        if (alike(&before, &v))
+        if (lengths_alike(&before, &v))
             return false;
     }
     return !too_far(&v);
@@ -261,10 +262,10 @@ static double energy_length(const nevh__axis *a, double guess, double energy) {
 }
 
 /* The size of variable i of n, or if it is 0 the largest of all. */
-static double size_of(const double x[], size_t n, size_t i) {
+static double lengths_size_of(const double x[], size_t n, size_t i) {
     double most = fabs(x[i]);
     for (size_t k = 0; x[i] == 0 && k < n; k++)
-        most = larger(most, fabs(x[k]));
+        most = lengths_larger(most, fabs(x[k]));
     return most;
 }
 
@@ -275,8 +276,8 @@ static double first_guess(const nevh__step_selection *e, size_t i) {
     const nevh__samples *s = &e->samples;
     double x = e->options->scale ? e->options->scale[i]
                : e->sizes        ? e->sizes[i]
-               : i < n           ? size_of(s->q + e->at * n, n, i)
-                                 : size_of(s->p + e->at * n, n, i - n);
+               : i < n           ? lengths_size_of(s->q + e->at * n, n, i)
+                                 : lengths_size_of(s->p + e->at * n, n, i - n);
     return x > 0 && isfinite(x) ? exp2(floor(log2(x))) : 1;
 }
 
@@ -373,7 +374,7 @@ static void find_straight(nevh__step_selection *e, const nevh__planned *term,
 }
 
 /* Copies a lane of the states given to sample `at`. */
-static void load(nevh__step_selection *e, size_t lane, size_t at) {
+static void lengths_load(nevh__step_selection *e, size_t lane, size_t at) {
     const nevh_options *o = e->options;
     size_t n = e->field->n, width = o->width ? o->width : 1;
     e->samples.t[at] = o->t;
@@ -401,12 +402,12 @@ static void find_over_lanes(nevh__step_selection *e, double *energy) {
             continue; /* nothing would be shorter */
         e->at = e->lanes;
         e->shortened = lane == 0;
-        load(e, lane, e->at);
+        lengths_load(e, lane, e->at);
         visit_all(e, find_curved, energy);
         if (e->shortened && e->lanes < MOST_LANES - 1)
             e->lanes++;
         else if (e->shortened)
-            load(e, lane, e->lanes - 1);
+            lengths_load(e, lane, e->lanes - 1);
     }
     e->samples.count = e->lanes;
     e->at = 0;
@@ -463,7 +464,7 @@ bool nevh__keep_lengths(const nevh__step_selection *e) {
 void nevh__find_lengths(nevh__step_selection *e) {
     double energy = 0, other = 0, last = 1;
     if (e->field->length) {
-        load(e, 0, 0);
+        lengths_load(e, 0, 0);
         e->lanes = e->samples.count = 1;
         memcpy(e->length, e->field->length, 2 * e->field->n * sizeof(double));
         return;

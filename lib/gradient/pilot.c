@@ -81,10 +81,10 @@ static bool runs_away(const nevh__step_selection *e, const double y[]) {
 }
 
 /* y: room for 4n doubles. */
-static void integrate(nevh__step_selection *e, int steps,
-                      gsl_odeiv2_system *ode, gsl_odeiv2_step *step,
-                      gsl_odeiv2_control *control, gsl_odeiv2_evolve *evolve,
-                      double *y) {
+static void pilot_integrate(nevh__step_selection *e, int steps,
+                            gsl_odeiv2_system *ode, gsl_odeiv2_step *step,
+                            gsl_odeiv2_control *control,
+                            gsl_odeiv2_evolve *evolve, double *y) {
     size_t n = e->field->n;
     memcpy(y, e->samples.q, n * sizeof *y);
     memcpy(y + n, e->samples.p, n * sizeof *y);
@@ -122,7 +122,7 @@ static bool run_pilot(nevh__step_selection *e, int steps) {
     nevh__control_init(&control);
     gsl_odeiv2_evolve *evolve = gsl_odeiv2_evolve_alloc(ode.dimension);
     if (step && evolve)
-        integrate(e, steps, &ode, step, &control.gsl, evolve, y);
+        pilot_integrate(e, steps, &ode, step, &control.gsl, evolve, y);
     gsl_odeiv2_step_free(step);
     gsl_odeiv2_evolve_free(evolve);
     free(y);

@@ -29,7 +29,7 @@ static double given_step(const nevh_options *o, size_t i) {
     return o->gradient_step;
 }
 
-static int check_options(nevh_field *f, const nevh_options *o) {
+static int plan_check_options(nevh_field *f, const nevh_options *o) {
     if (!(o->gradient_step >= 0 && o->gradient_step <= DBL_MAX))
         return nevh__fail(&f->report, NEVH_EINVAL,
                           "the gradient step %g is not a positive number",
@@ -251,7 +251,7 @@ static int plan_field(nevh_field *f, const nevh_options *o, const bool fast[]) {
     const nevh_system *s = f->system;
     if (s->report.status)
         return nevh__fail_as(&f->report, &s->report);
-    int status = check_options(f, o);
+    int status = plan_check_options(f, o);
     if (!status && !(f->scale = nevh__array(2 * f->n, sizeof(double))))
         status = nevh__no_memory(&f->report);
     for (size_t i = 0; !status && i < 2 * f->n; i++)

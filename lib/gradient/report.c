@@ -12,8 +12,8 @@ size_t nevh_field_step_count(const nevh_field *f) {
     return f ? f->n_steps : 0;
 }
 
-static nevh_step_report describe(const nevh_field *f, const nevh__planned *term,
-                                 size_t at) {
+static nevh_step_report report_describe(const nevh_field *f,
+                                        const nevh__planned *term, size_t at) {
     size_t row = at / term->nv, k = at % term->nv;
     size_t instance = row * nevh__stride(term->term->decl.count);
     const nevh__step *s = &term->steps[at];
@@ -48,7 +48,7 @@ nevh_step_report nevh_field_step_report(const nevh_field *f, size_t i) {
         else
             high = middle;
     }
-    return describe(f, &f->terms[low], i - f->terms[low].first_step);
+    return report_describe(f, &f->terms[low], i - f->terms[low].first_step);
 }
 
 /* Power of the noise, a sum over variables of (velocity times noise in the

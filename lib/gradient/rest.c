@@ -22,8 +22,9 @@ static const double most_work = 4e6; /* instances times steps */
 static const double overflowing = 0x1p500, underflowing = 0x1p-900;
 
 /* Adds (dH/dp, -dH/dq) of one block of instances, lane by lane. */
-static void add_block(nevh_field *f, const nevh__planned *term, size_t first,
-                      double t, const double y[], double dydt[]) {
+static void rest_add_block(nevh_field *f, const nevh__planned *term,
+                           size_t first, double t, const double y[],
+                           double dydt[]) {
     const nevh_term *decl = &term->term->decl;
     size_t n = f->n, rows = term->nv + decl->nc;
     size_t used = decl->count - first;
@@ -64,7 +65,7 @@ static void add_terms(nevh_field *f, double t, const double y[],
         for (size_t first = 0;
              f->terms[i].nv && first < f->terms[i].term->decl.count;
              first += NEVH__LANES)
-            add_block(f, &f->terms[i], first, t, y, dydt);
+            rest_add_block(f, &f->terms[i], first, t, y, dydt);
 }
 
 typedef struct {
@@ -93,8 +94,8 @@ static int motion(double t, const double y[], double dydt[], void *of) {
 }
 
 /* The error over what is allowed, of sizes so far, which y makes larger. */
-static double excess(size_t size, const double y[], const double error[],
-                     double sizes[]) {
+static double rest_excess(size_t size, const double y[], const double error[],
+                          double sizes[]) {
     double most = 0;
     for (size_t i = 0; i < size; i++) {
         sizes[i] = fmax(sizes[i], fabs(y[i]));
@@ -116,8 +117,8 @@ static double first_step(law *m, double t, const double y[], double dydt[]) {
 }
 
 /* y: 4 x 2n; the first are the state.  Returns whether there are sizes. */
-static bool follow(law *m, gsl_odeiv2_step *step, double t, double *y,
-                   double sizes[], nevh__orbit_fn visit, void *context) {
+static bool rest_follow(law *m, gsl_odeiv2_step *step, double t, double *y,
+                        double sizes[], nevh__orbit_fn visit, void *context) {
     size_t size = 2 * m->field->n;
     double *before = y + size, *error = before + size, *last = error + size;
     gsl_odeiv2_system ode = {motion, NULL, size, m};
@@ -128,7 +129,7 @@ static bool follow(law *m, gsl_odeiv2_step *step, double t, double *y,
         memcpy(last, sizes, size * sizeof *y);
         int status =
             gsl_odeiv2_step_apply(step, t, h, y, error, NULL, NULL, &ode);
-        double over = status ? INFINITY : excess(size, y, error, sizes);
+        double over = status ? INFINITY : rest_excess(size, y, error, sizes);
         if (status && ++failed > MOST_FAILED)
             return false;
         if (!(over <= 1)) {
@@ -169,7 +170,7 @@ bool nevh__follow_orbit(nevh_field *f, double t, const double q[],
     law m = {f, y ? y + 8 * n : NULL};
     if (y && !nevh_system_friction(f->system, m.friction))
         m.friction = NULL;
-    bool found = step && follow(&m, step, t, y, sizes, visit, context);
+    bool found = step && rest_follow(&m, step, t, y, sizes, visit, context);
     if (step)
         gsl_odeiv2_step_free(step);
     free(y);

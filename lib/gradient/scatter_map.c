@@ -36,8 +36,8 @@ static void list(nevh__scatter_map *x, const size_t index[], size_t uses[],
     x->column[uses[index[i * x->rows + k]]++] = k * x->stride + i;
 }
 
-static void fill(nevh__scatter_map *x, const size_t index[], size_t uses[],
-                 bool in_turn) {
+static void scatter_map_fill(nevh__scatter_map *x, const size_t index[],
+                             size_t uses[], bool in_turn) {
     for (size_t k = 0; k < x->rows; k++)
         for (size_t c = 0; c < x->stride; c++)
             x->source[k * x->stride + c] =
@@ -70,7 +70,7 @@ bool nevh__scatter_map_init(nevh__scatter_map *x, size_t n, size_t rows,
     bool all = x->source && x->target && x->begin && x->column;
     if (all) {
         begin_lists(x, n, uses);
-        fill(x, index, uses, in_turn);
+        scatter_map_fill(x, index, uses, in_turn);
     }
     free(uses);
     return all;
@@ -126,7 +126,7 @@ void nevh__gather(const nevh__scatter_map *x, size_t width, size_t stride,
 }
 
 /* The sum of x - x: 0 or NaN. */
-NEVH_SIMD static double check(size_t size, const double from[]) {
+NEVH_SIMD static double scatter_map_check(size_t size, const double from[]) {
     double bad[NEVH__LANES], sum = 0;
     NEVH_LANES(i, NEVH__LANES) {
         bad[i] = 0;
@@ -171,5 +171,5 @@ bool nevh__scatter(const nevh__scatter_map *x, size_t width, size_t stride,
         scatter_one(x, from, out);
     else
         scatter_lanes(x, width, stride, from, out);
-    return check(x->rows * stride, from) == 0;
+    return scatter_map_check(x->rows * stride, from) == 0;
 }

@@ -56,8 +56,8 @@ static void list_pass(const nevh_field *f, const nevh__planned *term,
 }
 
 /* Padding repeats the first column. */
-static void fill(const nevh_field *f, const nevh__planned *term, size_t part,
-                 nevh__stencil *s) {
+static void stencil_plan_fill(const nevh_field *f, const nevh__planned *term,
+                              size_t part, nevh__stencil *s) {
     s->points = 0;
     for (size_t i = 0; i < term->nv * s->padded; i++)
         s->shift[i] = -0.0;
@@ -101,7 +101,7 @@ static bool plan_part(const nevh_field *f, nevh__planned *term, size_t part) {
         nevh__array(term->term->decl.nc * f->capacity, sizeof *s->constants);
     if (!s->shift || !s->source || !s->until || !s->instance || !s->constants)
         return false;
-    fill(f, term, part, s);
+    stencil_plan_fill(f, term, part, s);
     return true;
 }
 
@@ -160,7 +160,8 @@ void nevh__central_stencils_clear(nevh_field *f) {
 
 /* The width's lanes, or a part of them in whole vectors, for which there is
    room in a block; 0: there is none. */
-static size_t lanes_of(const nevh__evaluation *e, const nevh__stencil *s) {
+static size_t stencil_plan_lanes_of(const nevh__evaluation *e,
+                                    const nevh__stencil *s) {
     size_t lanes = e->width;
     while (lanes > 0 &&
            (lanes * s->points > e->field->capacity || e->width % lanes))
@@ -168,7 +169,7 @@ static size_t lanes_of(const nevh__evaluation *e, const nevh__stencil *s) {
     return lanes;
 }
 
-static bool applicable(const nevh__evaluation *e) {
+static bool stencil_plan_applicable(const nevh__evaluation *e) {
     const nevh_field *f = e->field;
     if (!f->gradient->offsets)
         return false; /* there are no points */
@@ -182,16 +183,16 @@ static bool applicable(const nevh__evaluation *e) {
             continue;
         if (!s)
             return false; /* it is taken in blocks */
-        if (!lanes_of(e, s))
+        if (!stencil_plan_lanes_of(e, s))
             return false; /* there is no room for a vector of states */
     }
     return true;
 }
 
-static bool add_part(nevh__evaluation *e, nevh__planned *term) {
+static bool stencil_plan_add_part(nevh__evaluation *e, nevh__planned *term) {
     nevh_field *f = e->field;
     const nevh__stencil *s = term->stencil[nevh__part_of(&e->at)];
-    size_t lanes = lanes_of(e, s);
+    size_t lanes = stencil_plan_lanes_of(e, s);
     if (e->count == NEVH__MOST_PARTS)
         return false;
     nevh__term_part *x = &e->terms[e->count++];
@@ -210,16 +211,17 @@ static bool add_part(nevh__evaluation *e, nevh__planned *term) {
     return known;
 }
 
-static bool plan(nevh__evaluation *e) {
+static bool stencil_plan_plan(nevh__evaluation *e) {
     nevh_field *f = e->field;
     e->clear_q = e->at.dh_dq && !f->whole_q;
     e->clear_p = e->at.dh_dp && !f->whole_p;
     for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++) {
-        if (nevh__wanted(&e->at, term) && !add_part(e, term))
+        if (nevh__wanted(&e->at, term) && !stencil_plan_add_part(e, term))
             return false;
     }
     e->stencil = true;
     return e->count > 0;
 }
 
-const nevh__evaluator nevh__central_stencil = {applicable, plan};
+const nevh__evaluator nevh__central_stencil = {stencil_plan_applicable,
+                                               stencil_plan_plan};

@@ -40,20 +40,22 @@ typedef struct {
 } differences;
 
 /* A number that is not one is no larger. */
-static inline double larger(double a, double b) {
+static inline double step_scan_larger(double a, double b) {
     return b > a ? b : a;
 }
 
 /* Differences with `count` steps, whose values are `count` apart. */
-static void difference(const nevh_gradient *g, size_t count, const double *x,
-                       const double *h, double *slope, double *noise) {
+static void step_scan_difference(const nevh_gradient *g, size_t count,
+                                 const double *x, const double *h,
+                                 double *slope, double *noise) {
     memset(slope, 0, count * sizeof *slope);
     nevh__add_slopes(g, count, count, x, h, slope);
     for (size_t i = 0; i < count; i++) {
         double most = 0, reach = 0;
         for (size_t j = 0; j < g->offsets; j++) {
             size_t plus = 2 * j * count + i, minus = plus + count;
-            most = larger(most, larger(fabs(h[plus]), fabs(h[minus])));
+            most = step_scan_larger(
+                most, step_scan_larger(fabs(h[plus]), fabs(h[minus])));
             reach += fabs(g->weights[j] / (x[plus] - x[minus]));
         }
         noise[i] = 2 * DBL_EPSILON * most * reach;
@@ -64,18 +66,20 @@ static double finite_or_huge(double x) {
     return isfinite(x) ? x : INFINITY;
 }
 
-static void take(estimate *level, double usual, double now, double before,
-                 double noise) {
+static void step_scan_take(estimate *level, double usual, double now,
+                           double before, double noise) {
     double change = finite_or_huge(fabs(now - before));
-    double here = isfinite(now) ? fabs(now) : 0, size = larger(usual, here);
+    double here = isfinite(now) ? fabs(now) : 0,
+           size = step_scan_larger(usual, here);
     noise = finite_or_huge(noise);
-    level->truncation = larger(level->truncation, change);
-    level->rounding = larger(level->rounding, noise);
-    level->size = larger(level->size, here);
+    level->truncation = step_scan_larger(level->truncation, change);
+    level->rounding = step_scan_larger(level->rounding, noise);
+    level->size = step_scan_larger(level->size, here);
     if (size > 0) {
         level->share_truncation =
-            larger(level->share_truncation, change / size);
-        level->share_rounding = larger(level->share_rounding, noise / size);
+            step_scan_larger(level->share_truncation, change / size);
+        level->share_rounding =
+            step_scan_larger(level->share_rounding, noise / size);
     }
 }
 
@@ -95,9 +99,10 @@ static size_t try_steps(const nevh__axis *a, const nevh_gradient *g, size_t at,
         }
     }
     nevh__sample_line(a, at, 2 * g->offsets * count, move, x, h);
-    difference(nevh_central2, count, x, h, two->slope + from,
-               two->noise + from);
-    difference(g, count, x, h, full->slope + from, full->noise + from);
+    step_scan_difference(nevh_central2, count, x, h, two->slope + from,
+                         two->noise + from);
+    step_scan_difference(g, count, x, h, full->slope + from,
+                         full->noise + from);
     return count;
 }
 
@@ -108,10 +113,10 @@ static void scan_at(const nevh__axis *a, const nevh_gradient *g, size_t at,
     for (size_t from = 0; from <= LEVELS;)
         from += try_steps(a, g, at, unit, from, &two, &full);
     for (size_t i = 0; i < LEVELS; i++) {
-        take(&l->two[i], l->usual, two.slope[i + 1], two.slope[i],
-             two.noise[i + 1]);
-        take(&l->full[i], l->usual, full.slope[i + 1], full.slope[i],
-             full.noise[i + 1]);
+        step_scan_take(&l->two[i], l->usual, two.slope[i + 1], two.slope[i],
+                       two.noise[i + 1]);
+        step_scan_take(&l->full[i], l->usual, full.slope[i + 1], full.slope[i],
+                       full.noise[i + 1]);
     }
 }
 
@@ -185,8 +190,8 @@ static bool has_kinks(const nevh__planned *term) {
     return decl->block == nevh__tape_block && nevh__tape_breaks(decl->params);
 }
 
-static nevh__step choose(const nevh_gradient *g, const scan_result *l,
-                         double unit, bool kinks) {
+static nevh__step step_scan_choose(const nevh_gradient *g, const scan_result *l,
+                                   double unit, bool kinks) {
     int two = best_level(l, l->two, 2);
     if (kinks && two > usual_level(2))
         two = usual_level(2);
@@ -253,10 +258,10 @@ nevh__step nevh__scan_line(const nevh__axis *a, const nevh_gradient *g,
     for (size_t at = 0; at < a->e->samples.count;
          at += sample_stride(a->e, a->term))
         scan_at(a, g, at, unit, &l);
-    return choose(g, &l, unit, has_kinks(a->term));
+    return step_scan_choose(g, &l, unit, has_kinks(a->term));
 }
 
-static nevh__step scan(const nevh__axis *a) {
+static nevh__step step_scan_scan(const nevh__axis *a) {
     size_t i = nevh__index(a->term, a->instance, a->k);
     double length = a->e->length[a->k < a->term->nq ? i : a->e->field->n + i];
     return nevh__scan_line(a, a->e->field->gradient, length);
@@ -269,7 +274,7 @@ void nevh__scan_steps(nevh__step_selection *e, nevh__planned *term) {
         size_t from = nevh__probed(term, k);
         nevh__step *own = &term->steps[nevh__step_at(term, instance, k)];
         if (instance % stride == 0 && from == k)
-            *own = scan(&(nevh__axis){e, term, instance, k});
+            *own = step_scan_scan(&(nevh__axis){e, term, instance, k});
         else if (instance % stride == 0)
             *own = term->steps[nevh__step_at(term, instance, from)];
         term->delta[at] = own->delta;

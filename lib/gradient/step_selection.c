@@ -27,7 +27,8 @@ size_t nevh__step_at(const nevh__planned *term, size_t instance, size_t k) {
 }
 
 /* The largest size of a variable in the first `count` samples. */
-static double largest(const nevh__step_selection *e, size_t i, size_t count) {
+static double step_selection_largest(const nevh__step_selection *e, size_t i,
+                                     size_t count) {
     size_t n = e->field->n;
     const double *x = i < n ? e->samples.q : e->samples.p;
     double most = 0;
@@ -40,9 +41,9 @@ bool nevh__sizes_settled(const nevh__step_selection *e, size_t count) {
     if (count < FEWEST_SAMPLES || (count & (count - 1)) != 0)
         return false;
     for (size_t i = 0; i < 2 * e->field->n; i++) {
-        double before = largest(e, i, e->lanes + count / 2);
+        double before = step_selection_largest(e, i, e->lanes + count / 2);
         if (before < e->length[i] &&
-            largest(e, i, e->lanes + count) > 2 * before)
+            step_selection_largest(e, i, e->lanes + count) > 2 * before)
             return false;
     }
     return true;
@@ -56,7 +57,7 @@ static void set_scales(nevh__step_selection *e) {
     while (e->lanes + count < e->neighbours && !nevh__sizes_settled(e, count))
         count++;
     for (size_t i = 0; i < 2 * f->n; i++) {
-        double most = largest(e, i, e->lanes + count);
+        double most = step_selection_largest(e, i, e->lanes + count);
         f->scale[i] = most > 0 ? fmin(most, e->length[i]) : e->length[i];
     }
 }

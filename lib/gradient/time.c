@@ -20,8 +20,9 @@ static const double part = 0x1p-4;     /* of the time of the motion, or of t */
 static const double visible = 0x1p-17; /* of t, for a difference to be seen */
 
 /* Adds the derivative of a filled block; its copies are the stencil. */
-static int difference(nevh_field *f, nevh__planned *term, const nevh__block *b,
-                      const nevh__time_step *step, double dh_dt[]) {
+static int time_difference(nevh_field *f, nevh__planned *term,
+                           const nevh__block *b, const nevh__time_step *step,
+                           double dh_dt[]) {
     size_t apart = b->groups * b->lanes;
     for (size_t copy = 0; copy < b->copies; copy++)
         for (size_t i = copy * apart; i < (copy + 1) * apart; i++)
@@ -81,8 +82,8 @@ static int add_central(const slope_task *task) {
     int status = NEVH_OK;
     nevh__block b = copies_of(task, 2 * task->step->method->offsets);
     while (!status && nevh__block_next(task->field, task->term, &b))
-        status =
-            difference(task->field, task->term, &b, task->step, task->dh_dt);
+        status = time_difference(task->field, task->term, &b, task->step,
+                                 task->dh_dt);
     return status;
 }
 
@@ -201,8 +202,8 @@ static void spread_times(nevh__step_selection *e, double length) {
 
 /* The shortest step of those that the instances want; the difference of order
    2 where that is as good for all. */
-static nevh__time_step scan(const nevh__step_selection *e,
-                            const nevh__planned *term, double length) {
+static nevh__time_step time_scan(const nevh__step_selection *e,
+                                 const nevh__planned *term, double length) {
     size_t count = term->term->decl.count;
     double delta[2] = {INFINITY, INFINITY}; /* of order 8, of order 2 */
     for (size_t i = 0; i < count; i += nevh__stride(count)) {
@@ -216,12 +217,12 @@ static nevh__time_step scan(const nevh__step_selection *e,
     return (nevh__time_step){nevh_central2, delta[1]};
 }
 
-static nevh__time_step choose(nevh__step_selection *e,
-                              const nevh__planned *term, double pace) {
+static nevh__time_step time_choose(nevh__step_selection *e,
+                                   const nevh__planned *term, double pace) {
     double length = find_length(e, term, pace), size = fabs(e->options->t);
     if (isfinite(length)) {
         spread_times(e, length);
-        return scan(e, term, length);
+        return time_scan(e, term, length);
     }
     bool unseen = isnan(length);
     double delta = fmax(part * pace, (unseen ? visible : part) * size);
@@ -237,7 +238,7 @@ static void choose_all(nevh__step_selection *e, double slopes[],
     for (size_t i = 0; i < f->n_terms; i++) {
         if (!f->terms[i].term->decl.time)
             continue;
-        nevh__time_step step = choose(e, &f->terms[i], pace);
+        nevh__time_step step = time_choose(e, &f->terms[i], pace);
         if (!steps[i].method || step.delta < steps[i].delta)
             steps[i] = step;
     }

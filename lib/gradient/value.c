@@ -5,7 +5,7 @@
 #include <math.h>
 
 /* Neumaier's compensated sum. */
-static void add(double *sum, double *roundoff, double x) {
+static void value_add(double *sum, double *roundoff, double x) {
     double next = *sum + x;
     *roundoff += fabs(*sum) >= fabs(x) ? (*sum - next) + x : (x - next) + *sum;
     *sum = next;
@@ -13,14 +13,14 @@ static void add(double *sum, double *roundoff, double x) {
 
 /* Adds all instances of a term at a few lanes to sums, lost digits and, unless
    that is NULL, sizes. */
-static int add_term(nevh_field *f, nevh__planned *term, nevh__block b,
-                    double *sum, double *roundoff, double *size) {
+static int value_add_term(nevh_field *f, nevh__planned *term, nevh__block b,
+                          double *sum, double *roundoff, double *size) {
     int status = NEVH_OK;
     while (!status && nevh__block_next(f, term, &b)) {
         status = nevh__block_values(f, term, &b);
         for (size_t k = 0; !status && k < b.used; k++) {
             size_t lane = b.lane + k % b.lanes;
-            add(sum + lane, roundoff + lane, f->h[k]);
+            value_add(sum + lane, roundoff + lane, f->h[k]);
             if (size)
                 size[lane] += fabs(f->h[k]);
         }
@@ -51,7 +51,7 @@ int nevh_field_value(nevh_field *f, size_t width, const double t[],
         for (size_t lane = 0; lane < lanes; lane++)
             sum[lane] = roundoff[lane] = 0;
         for (size_t i = 0; !status && i < f->n_terms; i++)
-            status = add_term(f, &f->terms[i], b, sum, roundoff, NULL);
+            status = value_add_term(f, &f->terms[i], b, sum, roundoff, NULL);
         for (size_t lane = 0; lane < lanes; lane++)
             h[at + lane] = sum[lane] + roundoff[lane];
     }
@@ -69,8 +69,8 @@ int nevh__field_moving_values(nevh_field *f, size_t width, const double t[],
         lanes = b.until;
         for (size_t i = 0; !status && i < f->n_terms; i++)
             if (f->terms[i].nv)
-                status = add_term(f, &f->terms[i], b, h + at, roundoff + at,
-                                  size + at);
+                status = value_add_term(f, &f->terms[i], b, h + at,
+                                        roundoff + at, size + at);
     }
     return status;
 }
@@ -79,7 +79,7 @@ static int term_value(nevh_field *f, nevh__planned *term, double t,
                       const double q[], const double p[], double *h) {
     double sum = 0, roundoff = 0;
     nevh__block b = nevh__block_over(1, &t, q, p, 1, 1);
-    int status = add_term(f, term, b, &sum, &roundoff, NULL);
+    int status = value_add_term(f, term, b, &sum, &roundoff, NULL);
     *h = sum + roundoff;
     return status;
 }

@@ -78,8 +78,8 @@ static void ask_term(const check *c, size_t at) {
         c->own[k] = f->slopes[k * NEVH__LANES];
 }
 
-static const char *variable(const check *c, size_t k,
-                            char text[NEVH__VARIABLE]) {
+static const char *verify_variable(const check *c, size_t k,
+                                   char text[NEVH__VARIABLE]) {
     return nevh__variable_name(c->selection->field->system, k >= c->term->nq,
                                nevh__index(c->term, c->instance, k), text);
 }
@@ -92,7 +92,7 @@ static int wrong(const check *c, size_t k, double own, double difference) {
         "the exact gradient of term \"%s\" of effect \"%s\" is wrong: its "
         "derivative with respect to %s is %.9g where differences of its "
         "values give %.9g",
-        decl->name, decl->effect, variable(c, k, text), own, difference);
+        decl->name, decl->effect, verify_variable(c, k, text), own, difference);
 }
 
 /* The term's own derivative less that of its values, and how much the latter may
@@ -101,13 +101,14 @@ typedef struct {
     double own, near, deviation, allowed;
 } comparison;
 
-static double length_of(const check *c, size_t k) {
+static double verify_length_of(const check *c, size_t k) {
     size_t i = nevh__index(c->term, c->instance, k);
     return c->selection
         ->length[k < c->term->nq ? i : c->selection->field->n + i];
 }
 
-static comparison compare(const check *c, size_t k, size_t at, double length) {
+static comparison verify_compare(const check *c, size_t k, size_t at,
+                                 double length) {
     double noise = 0, own = c->own[k];
     double near = by_difference(c, k, at, short_step * length, &noise);
     double far = by_difference(c, k, at, long_step * length, &noise);
@@ -125,10 +126,10 @@ static bool deviates(const comparison *d) {
    there are ripples that the lengths do not know. */
 static bool agrees_nearer(const check *c, size_t k, size_t at,
                           double deviation) {
-    double length = length_of(c, k);
+    double length = verify_length_of(c, k);
     for (int i = 0; i < SHORTER; i++) {
         length *= nearer;
-        comparison d = compare(c, k, at, length);
+        comparison d = verify_compare(c, k, at, length);
         if (!deviates(&d) && d.allowed < fabs(deviation) / scattered)
             return true;
     }
@@ -147,7 +148,7 @@ static void displace(const check *c, size_t at, size_t to, double part,
     for (size_t k = 0; k < c->term->nv; k++) {
         double *x = (k < c->term->nq ? s->q : s->p) + to * n +
                     nevh__index(c->term, c->instance, k);
-        double length = length_of(c, k);
+        double length = verify_length_of(c, k);
         if (of_shorter && *x != 0)
             length = fmin(length, fabs(*x));
         *x += part * length * nevh__random(seed);
@@ -165,7 +166,7 @@ static bool is_error(const check *c, size_t k, size_t at, double deviation) {
     for (int i = 0; i < NEAR_BY; i++, away *= nearer) {
         displace(c, at, to, away, i % 2, &seed);
         ask_term(c, to);
-        comparison d = compare(c, k, to, length_of(c, k));
+        comparison d = verify_compare(c, k, to, verify_length_of(c, k));
         double part = d.deviation / deviation;
         if (!isfinite(part))
             continue;
@@ -187,7 +188,7 @@ static int check_sample(const check *c, size_t at) {
     for (size_t k = 0; k < term->nv; k++) {
         comparison d = {0};
         if (nevh__probed(term, k) == k)
-            d = compare(c, k, at, length_of(c, k));
+            d = verify_compare(c, k, at, verify_length_of(c, k));
         if (!deviates(&d))
             continue;
         if (!agrees_nearer(c, k, at, d.deviation) &&
@@ -198,7 +199,7 @@ static int check_sample(const check *c, size_t at) {
     return NEVH_OK;
 }
 
-static bool same(double a, double b) {
+static bool verify_same(double a, double b) {
     return memcmp(&a, &b, sizeof a) == 0 || (isnan(a) && isnan(b));
 }
 
@@ -211,12 +212,12 @@ static int unlike(const check *c, size_t k, double point, double block) {
         "gradient to the last bit: the derivative with respect to %s is "
         "%.17g where that of a block is %.17g; what is said of NEVH_GRADIENT "
         "in <nevh/body.h> may help, and to leave it out",
-        decl->name, decl->effect, variable(c, k, text), point, block);
+        decl->name, decl->effect, verify_variable(c, k, text), point, block);
 }
 
 /* Fills a block with one sample and neighbours of it, of which nothing is known
    but that other last bits come up. */
-static void spread(const check *c, size_t at, size_t round) {
+static void verify_spread(const check *c, size_t at, size_t round) {
     nevh_field *f = c->selection->field;
     double move[NEVH__LANES] = {0}, x[NEVH__LANES], h[NEVH__LANES];
     uint64_t seed = ROUNDS * at + round;
@@ -225,7 +226,7 @@ static void spread(const check *c, size_t at, size_t round) {
     for (size_t k = 0; k < c->term->nv; k++)
         for (size_t lane = 1; lane < NEVH__LANES; lane++)
             f->rows[k * NEVH__LANES + lane] +=
-                long_step * length_of(c, k) * nevh__random(&seed);
+                long_step * verify_length_of(c, k) * nevh__random(&seed);
     for (size_t lane = 1; lane < NEVH__LANES; lane++)
         f->times[lane] += long_step * fabs(nevh__random(&seed));
 }
@@ -244,7 +245,7 @@ static int check_lane(const check *c, size_t lane, bool of_q, bool of_p) {
                          decl->params, of_q ? own : NULL,
                          of_p ? own + term->nq : NULL);
     for (size_t k = of_q ? 0 : term->nq; k < (of_p ? term->nv : term->nq); k++)
-        if (!same(own[k], f->slopes[k * NEVH__LANES + lane]))
+        if (!verify_same(own[k], f->slopes[k * NEVH__LANES + lane]))
             return unlike(c, k, own[k], f->slopes[k * NEVH__LANES + lane]);
     return NEVH_OK;
 }
@@ -259,7 +260,7 @@ static int check_point(const check *c, size_t at, size_t round) {
     double *q = f->rows, *p = q + term->nq * NEVH__LANES;
     double *dp = f->slopes + term->nq * NEVH__LANES;
     int status = NEVH_OK;
-    spread(c, at, round);
+    verify_spread(c, at, round);
     for (size_t i = 0; !status && i < (round ? 1 : 3); i++) {
         decl->gradient(NEVH__LANES, decl->time ? f->times : f->zeros, q, p,
                        p + term->np * NEVH__LANES, decl->params,

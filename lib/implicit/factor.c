@@ -7,8 +7,8 @@
 #include <nevh/body.h>
 
 /* y -= factor x */
-NEVH_SIMD static void subtract(size_t count, double factor, const double *x,
-                               double *y) {
+NEVH_SIMD static void factor_subtract(size_t count, double factor,
+                                      const double *x, double *y) {
     for (size_t i = 0; i < count; i++)
         y[i] -= factor * x[i];
 }
@@ -41,7 +41,8 @@ bool nevh__factor(size_t rows, double matrix[], size_t pivot[]) {
             double *below = matrix + i * rows, factor = below[k] / row[k];
             below[k] = factor;
             if (factor != 0)
-                subtract(rows - k - 1, factor, row + k + 1, below + k + 1);
+                factor_subtract(rows - k - 1, factor, row + k + 1,
+                                below + k + 1);
         }
     }
     return true;

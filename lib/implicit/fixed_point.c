@@ -20,7 +20,7 @@
 
 enum { HOLD = 50 };
 
-static void lay_out(nevh__arena *a, void *solver) {
+static void fixed_point_lay_out(nevh__arena *a, void *solver) {
     nevh__stage_solver *s = solver;
     size_t width = s->work->width, state = 2 * s->work->size;
     size_t unknowns = s->rows * width, each = sizeof(double);
@@ -44,7 +44,7 @@ nevh__stage_solver *nevh__stage_solver_new(nevh_work *w,
     s->stages = shape->stages;
     s->first = shape->partitioned ? w->n : 0;
     s->rows = (2 * w->n - s->first) * s->stages;
-    s->memory = nevh__arena_new(lay_out, s);
+    s->memory = nevh__arena_new(fixed_point_lay_out, s);
     bool large = 2 * w->n * s->stages > NEVH__MOST_DENSE;
     s->newton = large ? NULL : nevh__newton_new(s);
     s->rescue = large ? NULL : nevh__rescue_new(s);
@@ -103,8 +103,8 @@ static int sweep_alone(nevh__stage_solver *, size_t lanes[], size_t count,
 /* One sweep over lanes under way; those that remain so move to the front.
    Those that are stuck are handed over.  Where H is not defined for one, each
    is swept alone, lest it decide over the others. */
-static int sweep(nevh__stage_solver *s, size_t lanes[], size_t *active,
-                 bool last) {
+static int fixed_point_sweep(nevh__stage_solver *s, size_t lanes[],
+                             size_t *active, bool last) {
     size_t count = *active;
     int status =
         s->problem->map(s->problem->data, count, lanes, s->problem->x, s->out);
@@ -134,7 +134,7 @@ static int sweep_alone(nevh__stage_solver *s, size_t lanes[], size_t count,
     int status = NEVH_OK;
     for (size_t a = 0; !status && a < count; a++) {
         size_t lane = lanes[a], one = 1;
-        status = sweep(s, &lane, &one, last);
+        status = fixed_point_sweep(s, &lane, &one, last);
         if (one)
             lanes[(*active)++] = lane;
     }
@@ -152,8 +152,8 @@ static bool held(nevh__stage_solver *s, size_t lane, int *status) {
 }
 
 /* Lanes from `first` to `until` - 1 are to be swept unless they are held. */
-static int begin(nevh__stage_solver *s, size_t first, size_t until,
-                 size_t *active) {
+static int fixed_point_begin(nevh__stage_solver *s, size_t first, size_t until,
+                             size_t *active) {
     const nevh__stage_group *group = s->problem->group;
     int status = NEVH_OK;
     for (size_t lane = first; !status && lane < until; lane++) {
@@ -173,8 +173,8 @@ typedef struct {
     bool settled[NEVH__MOST_GROUP];
 } group_state;
 
-static int settle(nevh__stage_solver *s, group_state *g, size_t i,
-                  nevh__stage_state state, size_t sweeps) {
+static int fixed_point_settle(nevh__stage_solver *s, group_state *g, size_t i,
+                              nevh__stage_state state, size_t sweeps) {
     const nevh__stage_problem *e = s->problem;
     g->settled[i] = true;
     g->left--;
@@ -186,8 +186,8 @@ static int settle(nevh__stage_solver *s, group_state *g, size_t i,
     return NEVH_OK;
 }
 
-static bool all_finite(const group_state *g,
-                       const nevh__stage_progress made[]) {
+static bool fixed_point_all_finite(const group_state *g,
+                                   const nevh__stage_progress made[]) {
     bool finite = true;
     for (size_t i = 0; i < g->count; i++)
         finite &= g->settled[i] || made[i].change < INFINITY;
@@ -228,7 +228,7 @@ static int sweep_group(nevh__stage_solver *s, group_state *g, size_t sweeps) {
     const nevh__stage_problem *e = s->problem;
     nevh__stage_progress made[NEVH__MOST_GROUP];
     int status = e->group->sweep(e->data, made);
-    if (!status && !all_finite(g, made))
+    if (!status && !fixed_point_all_finite(g, made))
         status = NEVH_EDOM;
     for (size_t i = 0; !status && i < g->count; i++) {
         if (g->settled[i])
@@ -238,7 +238,7 @@ static int sweep_group(nevh__stage_solver *s, group_state *g, size_t sweeps) {
         if (s->status)
             return s->status;
         if (state != NEVH__GO_ON || sweeps == NEVH__STAGE_SWEEPS)
-            status = settle(s, g, i, state, sweeps);
+            status = fixed_point_settle(s, g, i, state, sweeps);
     }
     return status;
 }
@@ -277,7 +277,7 @@ static int solve_group(nevh__stage_solver *s, size_t first, size_t count,
     status = NEVH_OK;
     for (size_t i = 0; !status && i < count; i++)
         if (!g.settled[i])
-            status = begin(s, first + i, first + i + 1, active);
+            status = fixed_point_begin(s, first + i, first + i + 1, active);
     return status;
 }
 
@@ -297,8 +297,9 @@ int nevh__stage_solve(nevh__stage_solver *s,
         first += count;
     }
     if (!status)
-        status = begin(s, first, width, &active);
+        status = fixed_point_begin(s, first, width, &active);
     for (size_t i = 1; !status && active > 0; i++)
-        status = sweep(s, s->lanes, &active, i >= NEVH__STAGE_SWEEPS);
+        status =
+            fixed_point_sweep(s, s->lanes, &active, i >= NEVH__STAGE_SWEEPS);
     return status;
 }

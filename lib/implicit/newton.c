@@ -42,7 +42,7 @@ struct nevh__newton {
     double *g, *out;       /* rows: G(x), the next x */
 };
 
-static void lay_out(nevh__arena *a, void *solver) {
+static void newton_lay_out(nevh__arena *a, void *solver) {
     const nevh__stage_solver *s = solver;
     struct nevh__newton *m = s->newton;
     size_t n = s->work->n, rows = s->rows, stages = s->stages;
@@ -75,7 +75,7 @@ struct nevh__newton *nevh__newton_new(nevh__stage_solver *s) {
     if (!m)
         return NULL;
     m->points = (s->shape.partitioned ? 1 : 2) * s->work->n + 1;
-    m->memory = nevh__arena_new(lay_out, s);
+    m->memory = nevh__arena_new(newton_lay_out, s);
     if (m->memory && s->shape.partitioned)
         multiply_stages(&s->shape, m->stage_product);
     if (m->memory)
@@ -91,7 +91,8 @@ void nevh__newton_free(struct nevh__newton *m) {
 }
 
 /* The states around the mean: variables `first` to `last` moved in turn. */
-static void spread(const nevh__stage_solver *s, size_t first, size_t last) {
+static void newton_spread(const nevh__stage_solver *s, size_t first,
+                          size_t last) {
     const struct nevh__newton *m = s->newton;
     size_t n = s->work->n, points = m->points;
     for (size_t i = 0; i < points; i++) {
@@ -109,8 +110,8 @@ static void spread(const nevh__stage_solver *s, size_t first, size_t last) {
 
 /* The derivative of slope `row` by variable `k`, which was moved in point i,
    in units of the scales. */
-static double derivative(const nevh__stage_solver *s, size_t row, size_t k,
-                         size_t i) {
+static double newton_derivative(const nevh__stage_solver *s, size_t row,
+                                size_t k, size_t i) {
     const struct nevh__newton *m = s->newton;
     size_t n = s->work->n, points = m->points;
     const double *x = (k < n ? m->q : m->p) + k % n * points;
@@ -123,12 +124,12 @@ static double derivative(const nevh__stage_solver *s, size_t row, size_t k,
 static int find_jacobian(nevh__stage_solver *s) {
     struct nevh__newton *m = s->newton;
     size_t all = 2 * s->work->n;
-    spread(s, 0, all);
+    newton_spread(s, 0, all);
     int status = nevh_work_gradient(s->work, m->points, m->times, m->q, m->p,
                                     m->dq, m->dp);
     for (size_t row = 0; !status && row < all; row++)
         for (size_t k = 0; k < all; k++)
-            m->jacobian[row * all + k] = derivative(s, row, k, k + 1);
+            m->jacobian[row * all + k] = newton_derivative(s, row, k, k + 1);
     return status;
 }
 
@@ -137,19 +138,19 @@ static int find_product(nevh__stage_solver *s, bool standing) {
     struct nevh__newton *m = s->newton;
     size_t n = s->work->n;
     double *force = m->jacobian, *mass = m->jacobian + n * n;
-    spread(s, n, 2 * n);
+    newton_spread(s, n, 2 * n);
     int status = nevh_work_gradient(s->work, m->points, m->times, m->q, m->p,
                                     NULL, m->dp);
     for (size_t i = 0; !status && i < n * n; i++)
-        mass[i] = derivative(s, i / n, n + i % n, i % n + 1);
+        mass[i] = newton_derivative(s, i / n, n + i % n, i % n + 1);
     for (size_t k = 0; !status && !standing && k < n; k++)
         m->mean[k] += s->problem->h / 2 * m->dp[k * m->points];
-    spread(s, 0, n);
+    newton_spread(s, 0, n);
     if (!status)
         status = nevh_work_gradient(s->work, m->points, m->times, m->q, m->p,
                                     m->dq, NULL);
     for (size_t i = 0; !status && i < n * n; i++)
-        force[i] = derivative(s, n + i / n, i % n, i % n + 1);
+        force[i] = newton_derivative(s, n + i / n, i % n, i % n + 1);
     for (size_t i = 0; !status && i < n * n; i++) {
         m->product[i] = 0;
         for (size_t j = 0; j < n; j++)
@@ -178,7 +179,7 @@ static void find_mean(const nevh__stage_solver *s, size_t lane) {
 }
 
 /* M, or what it has of K at unknowns r and c. */
-static double element(const nevh__stage_solver *s, size_t r, size_t c) {
+static double newton_element(const nevh__stage_solver *s, size_t r, size_t c) {
     const struct nevh__newton *m = s->newton;
     size_t stages = s->stages, n = s->work->n, at = c % stages * stages;
     size_t k = r / stages, l = c / stages, i = r % stages;
@@ -199,7 +200,7 @@ static int find_matrix(nevh__stage_solver *s, size_t lane, bool standing) {
         return status;
     for (size_t i = 0; i < s->rows * s->rows; i++) {
         size_t r = i / s->rows, c = i % s->rows;
-        m->matrix[i] = (r == c) - element(s, r, c);
+        m->matrix[i] = (r == c) - newton_element(s, r, c);
     }
     return nevh__factor(s->rows, m->matrix, m->pivot) ? NEVH_OK : NEVH_EDOM;
 }
@@ -268,7 +269,7 @@ static bool no_more_than_noise(nevh__stage_solver *s, size_t lane,
 }
 
 /* NEVH_OK; NEVH_EMAXITER or NEVH_EDOM when it does not get there. */
-static int iterate(nevh__stage_solver *s, size_t lane) {
+static int newton_iterate(nevh__stage_solver *s, size_t lane) {
     struct nevh__newton *m = s->newton;
     const nevh__stage_lane *l = &s->lane[lane];
     const nevh__stage_rule rule = {0.5, s->rows / 4, no_more_than_noise};
@@ -293,7 +294,7 @@ static int iterate(nevh__stage_solver *s, size_t lane) {
 }
 
 /* Gradients and sizes are the lane's from now on. */
-static void choose(nevh__stage_solver *s, size_t lane) {
+static void newton_choose(nevh__stage_solver *s, size_t lane) {
     nevh_field *f = s->work->field;
     if (f->lanes)
         nevh__field_choose(f, 1, &lane);
@@ -303,10 +304,10 @@ static void choose(nevh__stage_solver *s, size_t lane) {
 int nevh__newton_lane(nevh__stage_solver *s, size_t lane) {
     const nevh__stage_problem *e = s->problem;
     int status = NEVH_EMAXITER;
-    choose(s, lane);
+    newton_choose(s, lane);
     if (s->newton) {
         s->work->newtons++;
-        status = iterate(s, lane);
+        status = newton_iterate(s, lane);
     }
     if (s->status)
         return s->status;

@@ -69,7 +69,7 @@ static double unit(const nevh__stage_solver *s, size_t row) {
     return nevh__stage_unit(s, row, s->rescue->lane);
 }
 
-static int residual(const gsl_vector *u, void *params, gsl_vector *f) {
+static int rescue_residual(const gsl_vector *u, void *params, gsl_vector *f) {
     nevh__stage_solver *s = params;
     struct nevh__rescue *r = s->rescue;
     size_t width = s->work->width;
@@ -95,8 +95,8 @@ static int residual(const gsl_vector *u, void *params, gsl_vector *f) {
 
 /* The Jacobian at u, where the residual is f.  gsl_multiroot_fdjacobian does
    the same, but allocates on every call. */
-static int differences(const gsl_vector *u, const gsl_vector *f,
-                       nevh__stage_solver *s, gsl_matrix *jacobian) {
+static int rescue_differences(const gsl_vector *u, const gsl_vector *f,
+                              nevh__stage_solver *s, gsl_matrix *jacobian) {
     struct nevh__rescue *r = s->rescue;
     int status = GSL_SUCCESS;
     gsl_vector_memcpy(r->moved, u);
@@ -104,7 +104,7 @@ static int differences(const gsl_vector *u, const gsl_vector *f,
         double x = gsl_vector_get(u, j);
         double dx = GSL_SQRT_DBL_EPSILON * (x != 0 ? fabs(x) : 1);
         gsl_vector_set(r->moved, j, x + dx);
-        status = residual(r->moved, s, r->f_moved);
+        status = rescue_residual(r->moved, s, r->f_moved);
         gsl_vector_set(r->moved, j, x);
         gsl_vector_sub(r->f_moved, f);
         gsl_vector_scale(r->f_moved, 1 / dx);
@@ -113,21 +113,23 @@ static int differences(const gsl_vector *u, const gsl_vector *f,
     return status;
 }
 
-static int slopes(const gsl_vector *u, void *params, gsl_matrix *jacobian) {
+static int rescue_slopes(const gsl_vector *u, void *params,
+                         gsl_matrix *jacobian) {
     nevh__stage_solver *s = params;
-    int status = residual(u, s, s->rescue->f);
-    return status ? status : differences(u, s->rescue->f, s, jacobian);
+    int status = rescue_residual(u, s, s->rescue->f);
+    return status ? status : rescue_differences(u, s->rescue->f, s, jacobian);
 }
 
-static int both(const gsl_vector *u, void *params, gsl_vector *f,
-                gsl_matrix *jacobian) {
-    int status = residual(u, params, f);
-    return status ? status : differences(u, f, params, jacobian);
+static int rescue_both(const gsl_vector *u, void *params, gsl_vector *f,
+                       gsl_matrix *jacobian) {
+    int status = rescue_residual(u, params, f);
+    return status ? status : rescue_differences(u, f, params, jacobian);
 }
 
-static void iterate(nevh__stage_solver *s) {
+static void rescue_iterate(nevh__stage_solver *s) {
     struct nevh__rescue *r = s->rescue;
-    gsl_multiroot_function_fdf f = {residual, slopes, both, s->rows, s};
+    gsl_multiroot_function_fdf f = {rescue_residual, rescue_slopes, rescue_both,
+                                    s->rows, s};
     r->residual = INFINITY;
     gsl_vector_set_zero(r->start);
     int status = gsl_multiroot_fdfsolver_set(r->gsl, &f, r->start);
@@ -166,7 +168,7 @@ int nevh__rescue_lane(nevh__stage_solver *s, size_t lane) {
     if (!r)
         return give_up(s, lane);
     r->lane = lane;
-    iterate(s);
+    rescue_iterate(s);
     if (r->residual == INFINITY)
         return give_up(s, lane);
     for (size_t row = 0; row < s->rows; row++)

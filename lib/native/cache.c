@@ -142,7 +142,7 @@ static void remove_old(const char *folder, const char *name, time_t made) {
 }
 
 /* Bytes of all files; `oldest`: out, the one to go next. */
-static double look(const char *folder, char oldest[]) {
+static double cache_look(const char *folder, char oldest[]) {
     double bytes = 0;
     struct stat found, first = {0};
     DIR *all = opendir(folder);
@@ -165,9 +165,9 @@ static double look(const char *folder, char oldest[]) {
     return bytes;
 }
 
-static void make_room(const char *folder) {
+static void cache_make_room(const char *folder) {
     char oldest[NAME_MAX + 1];
-    while (look(folder, oldest) > MOST_BYTES && oldest[0]) {
+    while (cache_look(folder, oldest) > MOST_BYTES && oldest[0]) {
         char *path = nevh__text("%s/%s", folder, oldest);
         bool gone = path && unlink(path) == 0;
         free(path);
@@ -216,6 +216,6 @@ bool nevh__cache_store(const char *folder, const char *from, const char *to) {
     bool there = write_file(folder, to, bytes, count + sizeof end);
     free(bytes);
     if (there)
-        make_room(folder);
+        cache_make_room(folder);
     return there;
 }

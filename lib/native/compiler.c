@@ -134,8 +134,9 @@ static int set_files(posix_spawn_file_actions_t *files, int out, int lifeline) {
 }
 
 /* returns  0, or an error number */
-static int start(const char *const arguments[], char *const environment[],
-                 const sigset_t *before, int out, int lifeline, pid_t *child) {
+static int compiler_start(const char *const arguments[],
+                          char *const environment[], const sigset_t *before,
+                          int out, int lifeline, pid_t *child) {
     posix_spawnattr_t how;
     posix_spawn_file_actions_t files;
     int wrong = posix_spawnattr_init(&how);
@@ -293,12 +294,13 @@ static void close_pipe(const int ends[2]) {
             close(ends[i]);
 }
 
-static void begin(const char *const arguments[], char *const environment[],
-                  const sigset_t *before, nevh__compiling *c) {
+static void compiler_begin(const char *const arguments[],
+                           char *const environment[], const sigset_t *before,
+                           nevh__compiling *c) {
     int out[2], life[2] = {-1, -1}, wrong = EMFILE;
     if (open_pipe(out) && open_pipe(life))
-        wrong =
-            start(arguments, environment, before, out[1], life[0], &c->child);
+        wrong = compiler_start(arguments, environment, before, out[1], life[0],
+                               &c->child);
     if (wrong) {
         c->child = 0;
         snprintf(c->output.text, sizeof c->output.text,
@@ -315,7 +317,7 @@ static void begin(const char *const arguments[], char *const environment[],
     c->runs = true;
 }
 
-static size_t length_of(const char *const list[]) {
+static size_t compiler_length_of(const char *const list[]) {
     size_t count = 0;
     while (list[count])
         count++;
@@ -328,8 +330,8 @@ static void begin_words(char *const words[], const char *command,
                         const sigset_t *before, nevh__compiling *c) {
     const char *first[] = {"/bin/sh", "-c", watch, "nevh", is->folder},
                *last[] = {"-o", is->object, is->source, "-lm", NULL};
-    size_t count = length_of((const char *const *)words),
-           flags = length_of(is->flags);
+    size_t count = compiler_length_of((const char *const *)words),
+           flags = compiler_length_of(is->flags);
     const char **all =
         nevh__array(WATCH_WORDS + count + flags + LAST_WORDS, sizeof *all);
     if (!all)
@@ -339,7 +341,7 @@ static void begin_words(char *const words[], const char *command,
     all[WATCH_WORDS] = command;
     memcpy(all + WATCH_WORDS + count, is->flags, flags * sizeof *all);
     memcpy(all + WATCH_WORDS + count + flags, last, sizeof last);
-    begin(all, environment, before, c);
+    compiler_begin(all, environment, before, c);
     free(all);
 }
 

@@ -48,7 +48,7 @@ static const char *take_word(const char *at, char **to) {
 }
 
 /* Words apart by blanks, as a shell has them; in one piece of memory. */
-static char **split(const char *text) {
+static char **compiler_words_split(const char *text) {
     size_t bytes = strlen(text) + 1, count = 0;
     char **words = malloc((bytes / 2 + 2) * sizeof *words + bytes);
     char *to = words ? (char *)(words + bytes / 2 + 2) : NULL;
@@ -82,7 +82,7 @@ char **nevh__compiler_words(void) {
     static const char *const usual[] = {"cc", "gcc", "clang"};
     const char *given = getenv("CC");
     if (given && given[strspn(given, " \t\n")])
-        return is_command(given) ? single(given) : split(given);
+        return is_command(given) ? single(given) : compiler_words_split(given);
     for (size_t i = 0; i < sizeof usual / sizeof *usual; i++)
         if (is_command(usual[i]))
             return single(usual[i]);

@@ -138,9 +138,10 @@ void nevh__write_effect(nevh__writer *w, const nevh_term *is) {
     nevh__write(w, " */\n");
 }
 
-static void name_at_state(nevh__writer *w, const nevh__formula_text *f,
-                          nevh__variable kind, size_t k,
-                          char name[NEVH__NAME]) {
+static void energy_text_name_at_state(nevh__writer *w,
+                                      const nevh__formula_text *f,
+                                      nevh__variable kind, size_t k,
+                                      char name[NEVH__NAME]) {
     const nevh_term *is = f->data;
     if (kind == NEVH__T)
         snprintf(name, NEVH__NAME, "t");
@@ -162,10 +163,10 @@ static const char add[] =
     "                                   : (x - next) + *sum;\n"
     "    *sum = next;\n}\n\n";
 
-static bool write_term(nevh__writer *w, const nevh_term *is) {
+static bool energy_text_write_term(nevh__writer *w, const nevh_term *is) {
     nevh__formula_text formula = {.tape = is->params,
                                   .scalar = true,
-                                  .variable = name_at_state,
+                                  .variable = energy_text_name_at_state,
                                   .data = is};
     nevh__write_effect(w, is);
     for (size_t i = 0; i < is->count; i++) {
@@ -196,7 +197,7 @@ bool nevh__write_energy(nevh__writer *w, const nevh_field *f) {
         }
         fine = w->loops && nevh__is_loop(&f->terms[i])
                    ? nevh__write_loop_of_values(w, &f->terms[i])
-                   : write_term(w, is);
+                   : energy_text_write_term(w, is);
     }
     nevh__write(w, "    return sum + lost;\n}\n\n");
     return fine;

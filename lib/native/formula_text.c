@@ -214,8 +214,9 @@ static bool *adjoint_name(const nevh__formula_text *f, const reading *r,
 }
 
 /* The adjoint of an operation's result is handed on to one argument. */
-static void hand_on(nevh__writer *w, const nevh__formula_text *f,
-                    const reading *r, uint32_t i, bool second, const names *x) {
+static void formula_text_hand_on(nevh__writer *w, const nevh__formula_text *f,
+                                 const reading *r, uint32_t i, bool second,
+                                 const names *x) {
     const nevh__instruction *at = &f->tape->code[i];
     nevh__tape_operand o = second ? at->b : at->a;
     char to[NEVH__NAME], g[NEVH__NAME], g_cosine[NEVH__NAME],
@@ -257,9 +258,9 @@ static void write_backwards(nevh__writer *w, const nevh__formula_text *f,
             continue;
         find_names(w, f, r, i, &x);
         if (at->a.by & wanted)
-            hand_on(w, f, r, i, false, &x);
+            formula_text_hand_on(w, f, r, i, false, &x);
         if (at->b.by & wanted)
-            hand_on(w, f, r, i, true, &x);
+            formula_text_hand_on(w, f, r, i, true, &x);
     }
 }
 
@@ -273,7 +274,8 @@ static void write_check(nevh__writer *w, const char *value) {
 }
 
 /* |c| of a number c, else NAN. */
-static double size_of(const nevh__tape *tape, nevh__tape_operand o) {
+static double formula_text_size_of(const nevh__tape *tape,
+                                   nevh__tape_operand o) {
     return o.kind == NEVH__NUMBER ? fabs(tape->numbers[o.at]) : NAN;
 }
 
@@ -287,7 +289,8 @@ static void finite_with(nevh__writer *w, const nevh__formula_text *f,
     bool cosine = r->last_cosine;
     while (o.kind == NEVH__SLOT && !cosine) {
         const nevh__instruction *at = &tape->code[from];
-        double a = size_of(tape, at->a), b = size_of(tape, at->b);
+        double a = formula_text_size_of(tape, at->a),
+               b = formula_text_size_of(tape, at->b);
         bool first = at->operation == NEVH__NEGATE ||
                      (at->operation == NEVH__MULTIPLY && b <= 1) ||
                      (at->operation == NEVH__DIVIDE && b >= 1);
@@ -328,8 +331,9 @@ bool nevh__write_gradient(nevh__writer *w, nevh__formula_text *f,
 }
 
 /* True if an operand changes with the variable that is moved. */
-static bool moves(const reading *r, nevh__tape_operand o, uint32_t from,
-                  bool cosine, nevh__variable by, size_t k) {
+static bool formula_text_moves(const reading *r, nevh__tape_operand o,
+                               uint32_t from, bool cosine, nevh__variable by,
+                               size_t k) {
     if (o.kind == NEVH__SLOT)
         return cosine ? r->begun_cosine[from] : r->begun[from];
     return o.kind == (uint8_t)by && o.at == k;
@@ -344,16 +348,17 @@ static void part_name(const nevh__formula_text *f, nevh__tape_operand o,
         snprintf(name, NEVH__NAME, "0x1p-332");
 }
 
-static void write_parts(nevh__writer *w, const nevh__formula_text *f,
-                        reading *r, nevh__variable by, size_t k) {
+static void formula_text_write_parts(nevh__writer *w,
+                                     const nevh__formula_text *f, reading *r,
+                                     nevh__variable by, size_t k) {
     for (uint32_t i = 0; i < f->tape->length; i++) {
         const nevh__instruction *at = &f->tape->code[i];
         bool cosine_a = r->cosine[2 * i], cosine_b = r->cosine[2 * i + 1];
         bool one = at->operation < NEVH__OPERATION_COUNT
                        ? nevh__operation_arguments(at->operation) == 1
                        : true;
-        bool a = moves(r, at->a, r->a[i], cosine_a, by, k);
-        bool b = !one && moves(r, at->b, r->b[i], cosine_b, by, k);
+        bool a = formula_text_moves(r, at->a, r->a[i], cosine_a, by, k);
+        bool b = !one && formula_text_moves(r, at->b, r->b[i], cosine_b, by, k);
         names x;
         char g[NEVH__NAME];
         if (!a && !b)
@@ -403,8 +408,8 @@ bool nevh__write_complex(nevh__writer *w, nevh__formula_text *f,
     if (fine) {
         nevh__tape_operand o = f->tape->result;
         write_check(w, result);
-        write_parts(w, f, &r, by, k);
-        if (moves(&r, o, r.last, r.last_cosine, by, k))
+        formula_text_write_parts(w, f, &r, by, k);
+        if (formula_text_moves(&r, o, r.last, r.last_cosine, by, k))
             part_name(f, o, r.last, r.last_cosine, result);
         else
             snprintf(result, NEVH__NAME, "0.0");

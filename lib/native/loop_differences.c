@@ -24,7 +24,8 @@ static void name_moved(nevh__writer *w, const nevh__formula_text *f,
         nevh__loop_name(w, &at, kind, k, name);
 }
 
-static double step_of(const nevh__term_loop *x, size_t instance, size_t k) {
+static double loop_differences_step_of(const nevh__term_loop *x,
+                                       size_t instance, size_t k) {
     return x->s->term->delta[instance * x->s->term->nv + k];
 }
 
@@ -41,7 +42,7 @@ static void name_step(const nevh__term_loop *x, size_t k,
     nevh__writer *w = x->s->w;
     char number[NEVH__NAME];
     if (nevh__loop_has_common_step(x->s->term, k)) {
-        nevh__write_number(w, step_of(x, 0, k), number);
+        nevh__write_number(w, loop_differences_step_of(x, 0, k), number);
         snprintf(name, NEVH__NAME, w->readable ? "%.30s" : "ALL(%.30s)",
                  number);
         return;
@@ -51,7 +52,7 @@ static void name_step(const nevh__term_loop *x, size_t k,
     else
         snprintf(name, NEVH__NAME, "load_row(N + %zu + i, left)", w->count);
     for (size_t i = 0; !w->readable && i < x->s->term->term->decl.count; i++)
-        nevh__writer_append(w, step_of(x, i, k));
+        nevh__writer_append(w, loop_differences_step_of(x, i, k));
 }
 
 void nevh__write_steps(const nevh__term_loop *x) {
@@ -64,7 +65,7 @@ void nevh__write_steps(const nevh__term_loop *x) {
             return;
         }
         for (size_t i = 0; i < count; i++)
-            column[i] = step_of(x, i, x->vars[v]);
+            column[i] = loop_differences_step_of(x, i, x->vars[v]);
         snprintf(name, sizeof name, "    static const double step%u_%zu", x->id,
                  x->vars[v]);
         if (!nevh__loop_has_common_step(x->s->term, x->vars[v]))

@@ -99,7 +99,7 @@ static const char *half_of(const pairs *x, size_t k) {
 }
 
 /* States and slopes of both blocks. */
-static void write_loads(const pairs *x) {
+static void loop_pairs_write_loads(const pairs *x) {
     nevh__writer *w = x->loop->s->w;
     unsigned id = x->loop->id;
     for (size_t k = 0; k < x->of.nq; k++) {
@@ -219,7 +219,7 @@ bool nevh__write_pairs(const nevh__term_loop *loop) {
                        (const char *const[]){number[0], number[1], number[2],
                                              number[3],
                                              x.of.same ? "a == b" : "false"});
-    write_loads(&x);
+    loop_pairs_write_loads(&x);
     nevh__write_lines(w, (const char *const[]){turns, NULL});
     write_turn(&x);
     if (!nevh__write_loop_body(&inside))

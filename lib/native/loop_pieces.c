@@ -22,7 +22,7 @@ bool nevh__has_loops(const nevh_field *f) {
     return false;
 }
 
-static bool goes_on(const nevh__term_loop *x, size_t instance) {
+static bool loop_pieces_goes_on(const nevh__term_loop *x, size_t instance) {
     for (size_t k = 0; k < x->s->term->nv; k++)
         if (nevh__loop_index(x, instance, k) !=
             nevh__loop_index(x, instance - 1, k) + x->step[k])
@@ -44,7 +44,7 @@ static void find_pieces(nevh__term_loop *x) {
     }
     x->pieces = 1;
     for (size_t i = 1; i < count; i++)
-        x->pieces += !goes_on(x, i);
+        x->pieces += !loop_pieces_goes_on(x, i);
     size_t most = x->s->w->readable ? 1 : count / SHORT_PIECE;
     x->listed = x->pieces > most;
 }
@@ -90,7 +90,7 @@ void nevh__loop_pack(const nevh__term_loop *x) {
         for (size_t i = 0; i < count; i++)
             pack(&p, nevh__loop_index(x, i, k));
     for (size_t i = 0; !x->listed && i < count; i++) {
-        if (i > 0 && goes_on(x, i))
+        if (i > 0 && loop_pieces_goes_on(x, i))
             continue;
         pack(&p, i);
         for (size_t k = 0; k < nv; k++)
@@ -139,7 +139,7 @@ void nevh__loop_clear(nevh__term_loop *x) {
 }
 
 /* The reach of one term. */
-static size_t reach_of(const nevh__slope_text *s) {
+static size_t loop_pieces_reach_of(const nevh__slope_text *s) {
     size_t reach = 0;
     nevh__term_loop x;
     bool far = !nevh__loop_init(s, &x) ||
@@ -159,7 +159,7 @@ size_t nevh__slope_reach(nevh__writer *w, nevh_field *f, bool kick) {
         nevh__slope_text s = {w, f, &f->terms[i], kick};
         if (nevh__first_of(&s) == nevh__end_of(&s))
             continue;
-        size_t here = reach_of(&s);
+        size_t here = loop_pieces_reach_of(&s);
         reach = here > reach ? here : reach;
     }
     return reach;

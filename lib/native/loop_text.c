@@ -52,7 +52,7 @@ void nevh__loop_name(nevh__writer *w, const nevh__formula_text *f,
 }
 
 /* Loads of a vector of instances. */
-static void write_loads(const nevh__term_loop *x, size_t constants) {
+static void loop_text_write_loads(const nevh__term_loop *x, size_t constants) {
     nevh__writer *w = x->s->w;
     const nevh_term *is = nevh__loop_term(x);
     for (size_t k = 0; k < x->s->term->nv; k++) {
@@ -222,7 +222,7 @@ static bool write_block(const nevh__term_loop *x) {
                     x->s->term->nv + 1);
     nevh__write(w, "        for (size i = begin; i < end; i += 8) {\n"
                    "    const size left = end - i;\n");
-    write_loads(x, constants);
+    loop_text_write_loads(x, constants);
     if (!nevh__write_loop_body(x))
         return false;
     nevh__write(w, "        }\n");

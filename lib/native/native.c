@@ -214,7 +214,7 @@ static bool write_text(nevh__writer *text, nevh_work *w) {
 }
 
 /* Arguments of steps, but for numbers; false when memory is out. */
-static bool fill(nevh__native *x, const nevh_work *w) {
+static bool native_fill(nevh__native *x, const nevh_work *w) {
     size_t terms = w->field->n_terms;
     if (of_series(w))
         return true;
@@ -289,7 +289,7 @@ bool nevh__native_pays(const nevh_work *w) {
            compiling_pays(w, x->characters);
 }
 
-static bool take_steps(nevh__native *x) {
+static bool native_take_steps(nevh__native *x) {
     nevh__compiled_steps steps;
     if (x->compiler)
         return true;
@@ -306,7 +306,7 @@ static bool take_series(nevh_work *w, nevh__native *x) {
 }
 
 /* A table for each vector of lanes. */
-static bool take_numbers(nevh__native *x, nevh__writer *text) {
+static bool native_take_numbers(nevh__native *x, nevh__writer *text) {
     size_t tables = text->by_lane ? text->width / NEVH__LANES : 1;
     x->pitch = text->count;
     x->numbers = nevh__array(tables * x->pitch, sizeof *x->numbers);
@@ -327,7 +327,7 @@ void nevh__native_lane_take(nevh_work *w, size_t lane) {
     }
 }
 
-static bool make_room(nevh__native *x, size_t size) {
+static bool native_make_room(nevh__native *x, size_t size) {
     x->room = nevh__array(size + NEVH__LANES, sizeof *x->room);
     return x->room;
 }
@@ -345,8 +345,8 @@ static double patience(const nevh_work *w, size_t characters) {
 
 /* One orbit does not wait for a compiler: its steps are the kernel's until there are
    others, which give the same bits. */
-static bool load(const nevh_work *w, nevh__native *x, const char *text,
-                 bool compile, char why[NEVH__WHY_NATIVE]) {
+static bool native_load(const nevh_work *w, nevh__native *x, const char *text,
+                        bool compile, char why[NEVH__WHY_NATIVE]) {
     const char *cache = w->options->native_cache;
     double seconds = compile ? patience(w, x->characters) : 0;
     bool waits = w->options->native == NEVH_NATIVE_ALWAYS || w->width > 1 ||
@@ -374,27 +374,28 @@ static bool write_watching(nevh__writer *text, nevh_work *w,
     return write_text(text, w);
 }
 
-static bool plan(nevh_work *w, nevh__native *x, nevh__writer *text,
-                 const nevh__watched *watched, char why[NEVH__WHY_NATIVE]) {
+static bool native_plan(nevh_work *w, nevh__native *x, nevh__writer *text,
+                        const nevh__watched *watched,
+                        char why[NEVH__WHY_NATIVE]) {
     bool always = w->options->native == NEVH_NATIVE_ALWAYS;
     bool written = write_watching(text, w, watched);
     if (text->refusal && always)
         snprintf(why, NEVH__WHY_NATIVE, "%s", text->refusal);
-    if (!written || !fill(x, w))
+    if (!written || !native_fill(x, w))
         return false;
     x->watches = text->watched;
     x->characters = strlen(text->text);
     bool compile = compiling_pays(w, x->characters);
-    if (!load(w, x, text->text, compile, why)) {
+    if (!native_load(w, x, text->text, compile, why)) {
         if (!compile)
             why[0] = '\0';
         return false;
     }
-    if (!take_numbers(x, text))
+    if (!native_take_numbers(x, text))
         return false;
-    if (text->rows && !make_room(x, text->rows * nevh__padded(w->n)))
+    if (text->rows && !native_make_room(x, text->rows * nevh__padded(w->n)))
         return false;
-    return of_series(w) ? take_series(w, x) : take_steps(x);
+    return of_series(w) ? take_series(w, x) : native_take_steps(x);
 }
 
 void nevh__native_plan(nevh_work *w, const nevh__watched *watched,
@@ -413,7 +414,7 @@ void nevh__native_plan(nevh_work *w, const nevh__watched *watched,
     if (!always && seconds_foreseen(w) < loading_pays)
         return;
     nevh__native *x = nevh__array(1, sizeof *x);
-    if (x && plan(w, x, &text, watched, why)) {
+    if (x && native_plan(w, x, &text, watched, why)) {
         w->native = x;
         why[0] = '\0';
     } else

@@ -8,9 +8,10 @@ typedef struct {
     size_t constants; /* of the term, in the table of numbers */
 } place;
 
-static void name_at_state(nevh__writer *w, const nevh__formula_text *f,
-                          nevh__variable kind, size_t k,
-                          char name[NEVH__NAME]) {
+static void noise_text_name_at_state(nevh__writer *w,
+                                     const nevh__formula_text *f,
+                                     nevh__variable kind, size_t k,
+                                     char name[NEVH__NAME]) {
     const place *at = f->data;
     const nevh_term *is = &at->term->term->decl;
     if (kind == NEVH__T)
@@ -67,7 +68,7 @@ bool nevh__write_noise(nevh__writer *w, const nevh_field *f) {
         const nevh_term *is = &at.term->term->decl;
         nevh__formula_text formula = {.tape = is->params,
                                       .scalar = f->portable,
-                                      .variable = name_at_state,
+                                      .variable = noise_text_name_at_state,
                                       .data = &at};
         if (!at.term->delta)
             continue;

@@ -4,8 +4,10 @@
 #include "kernels/runge_kutta_private.h"
 #include "native/native_private.h"
 
-static void write_tables(nevh__writer *w, const nevh_nystrom *table,
-                         const nevh__nystrom_kinetic *kinetic, bool adapts) {
+static void nystrom_text_write_tables(nevh__writer *w,
+                                      const nevh_nystrom *table,
+                                      const nevh__nystrom_kinetic *kinetic,
+                                      bool adapts) {
     nevh__sums_text sums = {0};
     size_t s = table->stages;
     for (size_t i = 0; i < s; i++)
@@ -35,7 +37,7 @@ bool nevh__write_nystrom(nevh__writer *w, nevh_work *work) {
         return false;
     nevh__write_lines(w, nevh__stage_sums_text);
     nevh__write_lines(w, nevh__nystrom_step_text);
-    write_tables(w, table, &kinetic, adapts);
+    nystrom_text_write_tables(w, table, &kinetic, adapts);
     nevh__write_array(w, "AT_REST", "o->N", work->n, kinetic.rest);
     nevh__write_array(w, "INVERSE", "o->N", work->n, kinetic.inverse);
     nevh__write(w, "\n");

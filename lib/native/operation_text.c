@@ -16,7 +16,8 @@ static const char *const texts[][NEVH__OPERATION_PARTS] = {
 _Static_assert(sizeof texts / sizeof *texts == NEVH__OPERATION_COUNT,
                "each operation");
 
-static bool is(const char *word, size_t length, const char *name) {
+static bool operation_text_is(const char *word, size_t length,
+                              const char *name) {
     return strlen(name) == length && strncmp(word, name, length) == 0;
 }
 
@@ -24,14 +25,14 @@ static bool is(const char *word, size_t length, const char *name) {
 static const char *write_word(nevh__writer *w, const char *word, size_t length,
                               const nevh__operation_names *m) {
     const char *after = word + length;
-    const char *name = is(word, length, "a")   ? m->a
-                       : is(word, length, "b") ? m->b
-                       : is(word, length, "y") ? m->y
-                       : is(word, length, "g") ? m->g
-                                               : NULL;
+    const char *name = operation_text_is(word, length, "a")   ? m->a
+                       : operation_text_is(word, length, "b") ? m->b
+                       : operation_text_is(word, length, "y") ? m->y
+                       : operation_text_is(word, length, "g") ? m->g
+                                                              : NULL;
     if (name)
         nevh__write(w, "%s", name);
-    else if (is(word, length, "NEVH__F")) { /* NEVH__F(sin) */
+    else if (operation_text_is(word, length, "NEVH__F")) { /* NEVH__F(sin) */
         size_t bytes = strcspn(after, ")") - 1;
         nevh__write(w, "%s%.*s",
                     m->lanes    ? m->lanes->call
@@ -39,18 +40,19 @@ static const char *write_word(nevh__writer *w, const char *word, size_t length,
                                 : "lane_",
                     (int)bytes, after + 1);
         after += bytes + 2;
-    } else if (is(word, length, "NEVH__L") || is(word, length, "NEVH__H")) {
+    } else if (operation_text_is(word, length, "NEVH__L") ||
+               operation_text_is(word, length, "NEVH__H")) {
         size_t bytes = strcspn(after, ")") - 1; /* NEVH__L(asinh) */
         nevh__write(w, "%s%.*s", word[length - 1] == 'H' ? "nevh__" : "",
                     (int)bytes, after + 1);
         after += bytes + 2;
-    } else if (is(word, length, "NEVH__G"))
+    } else if (operation_text_is(word, length, "NEVH__G"))
         nevh__write(w, "%s * ", m->g);
-    else if (is(word, length, "NEVH__TWICE_G"))
+    else if (operation_text_is(word, length, "NEVH__TWICE_G"))
         nevh__write(w, "(2 * %s) * ", m->g);
-    else if (is(word, length, "NEVH__THRICE_G"))
+    else if (operation_text_is(word, length, "NEVH__THRICE_G"))
         nevh__write(w, "(3 * %s) * ", m->g);
-    else if (is(word, length, "NEVH__LN10"))
+    else if (operation_text_is(word, length, "NEVH__LN10"))
         nevh__write(w, "2.302585092994045684");
     else
         nevh__write(w, "%.*s", (int)length, word);

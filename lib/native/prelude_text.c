@@ -91,9 +91,9 @@ static const char by_eight[] =
     "INLINE few few_$1(few x$2) { wide z = wide_$1((wide){x[0], x[1], x[2], x[3], "
     "x[0], x[1], x[2], x[3]}$3); return (few){z[0], z[1], z[2], z[3]}; }\n";
 
-static void write_parts(nevh__writer *w, const char *f, bool two,
-                        const nevh__lane_words *words, int parts,
-                        const char *vector) {
+static void prelude_text_write_parts(nevh__writer *w, const char *f, bool two,
+                                     const nevh__lane_words *words, int parts,
+                                     const char *vector) {
     char count[12], second[20];
     snprintf(count, sizeof count, "%d", parts);
     snprintf(second, sizeof second, ", %s y", words->type);
@@ -110,7 +110,7 @@ static void write_vector(nevh__writer *w, const char *f, bool two, int lanes,
     vector_name(f, two, lanes, name);
     nevh__write(w, "extern vector %s(vector%s) CONST;\n", name,
                 two ? ", vector" : "");
-    write_parts(w, f, two, &nevh__eight, 8 / lanes, name);
+    prelude_text_write_parts(w, f, two, &nevh__eight, 8 / lanes, name);
     if (alike && lanes == 8) {
         write_lane(w, f);
         return;
@@ -120,7 +120,7 @@ static void write_vector(nevh__writer *w, const char *f, bool two, int lanes,
                 "%s(SAME(x)%s)[0]; }\n",
                 f, two ? ", double y" : "", name, two ? ", SAME(y)" : "");
     if (lanes < 8)
-        write_parts(w, f, two, &nevh__four, 4 / lanes, name);
+        prelude_text_write_parts(w, f, two, &nevh__four, 4 / lanes, name);
     else
         nevh__write_filled(
             w, by_eight,

@@ -9,8 +9,9 @@ static size_t stages_of(const nevh_butcher *table) {
     return table->stages - table->last_is_first;
 }
 
-static void write_tables(nevh__writer *w, const nevh_butcher *table,
-                         size_t used, bool adapts) {
+static void runge_kutta_text_write_tables(nevh__writer *w,
+                                          const nevh_butcher *table,
+                                          size_t used, bool adapts) {
     static const double none[1];
     size_t s = table->stages;
     nevh__sums_text sums = {0};
@@ -38,7 +39,7 @@ bool nevh__write_runge_kutta(nevh__writer *w, nevh_work *work) {
         return false;
     nevh__write_lines(w, nevh__stage_sums_text);
     nevh__write_lines(w, nevh__runge_kutta_step_text);
-    write_tables(w, table, stages, adapts);
+    runge_kutta_text_write_tables(w, table, stages, adapts);
     if (work->friction) {
         nevh__write_form(w, "NEVH__FRICTION");
         nevh__write_array(w, "RATES", "o->N", work->n, work->friction);

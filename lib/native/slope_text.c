@@ -24,7 +24,7 @@ typedef struct {
     size_t count, room;
 } sum;
 
-static void add_part(sum *s, size_t target, const char *name) {
+static void slope_text_add_part(sum *s, size_t target, const char *name) {
     if (s->count == s->room) {
         size_t room = s->room ? 2 * s->room : 64;
         part *parts = nevh__grow(s->parts, room, sizeof *parts);
@@ -41,9 +41,10 @@ static void add_part(sum *s, size_t target, const char *name) {
 }
 
 /* At the state. */
-static void name_at_state(nevh__writer *w, const nevh__formula_text *f,
-                          nevh__variable kind, size_t k,
-                          char name[NEVH__NAME]) {
+static void slope_text_name_at_state(nevh__writer *w,
+                                     const nevh__formula_text *f,
+                                     nevh__variable kind, size_t k,
+                                     char name[NEVH__NAME]) {
     const sum *s = f->data;
     const nevh_term *is = &s->of.term->term->decl;
     switch (kind) {
@@ -82,7 +83,7 @@ static void add_derivative(sum *s, nevh__formula_text *f, unsigned first,
     f->id = first + (unsigned)instance;
     nevh__derivative_name(f, s->of.kick ? NEVH__Q : NEVH__P,
                           k - nevh__first_of(&s->of), name);
-    add_part(s, nevh__index(s->of.term, instance, k), name);
+    slope_text_add_part(s, nevh__index(s->of.term, instance, k), name);
 }
 
 static bool write_exact(sum *s) {
@@ -91,7 +92,7 @@ static bool write_exact(sum *s) {
                             .lanes =
                                 nevh__has_lanes(s->of.w) ? &nevh__eight : NULL,
                             .scalar = s->of.f->portable,
-                            .variable = name_at_state,
+                            .variable = slope_text_name_at_state,
                             .data = s};
     unsigned first = s->of.w->formulas;
     for (f.instance = 0; f.instance < is->count; f.instance++)
@@ -111,7 +112,7 @@ static bool write_exact(sum *s) {
 static bool write_complex(sum *s) {
     const nevh_term *is = &s->of.term->term->decl;
     nevh__formula_text f = {
-        .tape = is->params, .variable = name_at_state, .data = s};
+        .tape = is->params, .variable = slope_text_name_at_state, .data = s};
     for (f.instance = 0; f.instance < is->count; f.instance++)
         for (size_t k = nevh__first_of(&s->of); k < nevh__end_of(&s->of); k++) {
             char taken[NEVH__NAME], name[NEVH__NAME];
@@ -122,7 +123,8 @@ static bool write_complex(sum *s) {
             snprintf(name, sizeof name, "c%u", f.id);
             nevh__write(s->of.w, "    double %s = %s * 0x1p332;\n", name,
                         taken);
-            add_part(s, nevh__index(s->of.term, f.instance, k), name);
+            slope_text_add_part(s, nevh__index(s->of.term, f.instance, k),
+                                name);
         }
     return true;
 }
@@ -174,7 +176,7 @@ static void list_points(const sum *s, stencil *x) {
 static const nevh__lane_words *words_of(const stencil *x) {
     return x->count - x->at > 4 ? &nevh__eight : &nevh__four;
 }
-static size_t lanes_of(const stencil *x) {
+static size_t slope_text_lanes_of(const stencil *x) {
     return x->count - x->at > 4 ? LANES : 4;
 }
 
@@ -187,7 +189,7 @@ static const point *point_in(const stencil *x, size_t lane) {
 /* One variable of a block's points. */
 static void write_variable(nevh__writer *w, const stencil *x, size_t k) {
     const nevh__planned *term = x->s->of.term;
-    size_t index[LANES], lanes = lanes_of(x);
+    size_t index[LANES], lanes = slope_text_lanes_of(x);
     const nevh__lane_words *words = words_of(x);
     bool same = true, moved = false;
     const char *half = k < term->nq ? "q" : "p";
@@ -227,7 +229,7 @@ static void name_in_block(nevh__writer *w, const nevh__formula_text *f,
                  kind == NEVH__Q ? k : term->nq + k);
     else {
         bool same = true;
-        size_t lanes = lanes_of(x);
+        size_t lanes = slope_text_lanes_of(x);
         for (size_t lane = 1; lane < lanes; lane++)
             same &= point_in(x, lane)->instance == point_in(x, 0)->instance;
         if (same) {
@@ -273,7 +275,7 @@ static void name_at_point(nevh__writer *w, const nevh__formula_text *f,
         nevh__formula_text at = *f;
         at.data = x->s;
         at.instance = x->points[x->at].instance;
-        name_at_state(w, &at, kind, k, name);
+        slope_text_name_at_state(w, &at, kind, k, name);
     }
 }
 
@@ -352,7 +354,8 @@ static void write_slopes(nevh__writer *w, sum *s, const stencil *x,
             nevh__write(w, "))");
         }
         nevh__write(w, ";\n");
-        add_part(s, nevh__index(s->of.term, one->instance, one->k), name);
+        slope_text_add_part(s, nevh__index(s->of.term, one->instance, one->k),
+                            name);
     }
 }
 
@@ -403,7 +406,7 @@ static void write_added(sum *s) {
     s->count = 0;
 }
 
-static bool write_term(sum *s) {
+static bool slope_text_write_term(sum *s) {
     nevh__writer *w = s->of.w;
     const nevh_term *is = &s->of.term->term->decl;
     if (w->loops && nevh__is_loop(s->of.term))
@@ -465,7 +468,7 @@ static bool write_slope(nevh__writer *w, nevh_field *f, bool kick,
     for (size_t i = 0; fine && i < f->n_terms; i++) {
         s.of.term = &f->terms[i];
         if (nevh__is_wanted(s.of.term, kick))
-            fine = write_term(&s);
+            fine = slope_text_write_term(&s);
     }
     if (!w->loops)
         write_sums(&s);

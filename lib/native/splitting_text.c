@@ -139,8 +139,9 @@ static bool write_step_of_parts(nevh__writer *w, nevh_work *work) {
     return true;
 }
 
-static void write_tables(nevh__writer *w, const nevh_splitting *table,
-                         size_t count) {
+static void splitting_text_write_tables(nevh__writer *w,
+                                        const nevh_splitting *table,
+                                        size_t count) {
     double *weights, *times;
     if (nevh__splitting_tables(table, &weights, &times)) {
         nevh__write(w, "/* Weights, and times as parts of a step. */\n");
@@ -164,7 +165,7 @@ bool nevh__write_splitting(nevh__writer *w, nevh_work *work) {
     nevh__write(w, "enum { OPERATIONS = %zu, KICKS_FIRST = %d, KEEPS = %d };\n",
                 count, table->first == NEVH_KICK, keeps);
     if (w->readable)
-        write_tables(w, table, count);
+        splitting_text_write_tables(w, table, count);
     nevh__write_lines(w, nevh__splitting_step_text);
     if (!w->readable)
         nevh__write_lines(w, nevh__splitting_first_text);

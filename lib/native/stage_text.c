@@ -10,8 +10,8 @@ static const char sizes[] =
     "       SCALES_APART = %zu, STRIDE = %zu, FEW = STAGES == ROW ? %d : 0,\n"
     "       PARTITIONED = %d, NOISY = %d, NEWTON = %d };\n";
 
-static void write_tables(nevh__writer *w, const nevh__tableau *a,
-                         const nevh__stage_weights *padded) {
+static void stage_text_write_tables(nevh__writer *w, const nevh__tableau *a,
+                                    const nevh__stage_weights *padded) {
     size_t matrix = padded->stages * padded->row;
     nevh__write(w,
                 "/* mu_ij = a_ij / b_j, column by column, by which slopes "
@@ -58,7 +58,7 @@ static void write_step(nevh__writer *w, const nevh_work *work,
                        const nevh__stage_weights *padded) {
     bool one = w->width == 1;
     write_sizes(w, work, padded);
-    write_tables(w, a, padded);
+    stage_text_write_tables(w, a, padded);
     nevh__write_lines(w, nevh__stage_progress_text);
     nevh__write_lines(w, nevh__stage_judge_text);
     nevh__write_lines(w, nevh__stage_step_text);

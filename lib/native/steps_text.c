@@ -11,7 +11,7 @@ static bool begins(const char *line, const char *word) {
 }
 
 /* True if the condition of a line "#ifdef NAME" or "#ifndef NAME" holds. */
-static bool holds(const nevh__writer *w, const char *line) {
+static bool steps_text_holds(const nevh__writer *w, const char *line) {
     static const char readers[] = "NEVH__FOR_READERS";
     static const char shape[] = "NEVH__ONE_SHAPE";
     const char *name = line + strcspn(line, " ") + 1;
@@ -31,7 +31,7 @@ static bool take_condition(const nevh__writer *w, conditions *c,
                            const char *line) {
     if (begins(line, "#if")) {
         c->open++;
-        if (!c->skipped && !holds(w, line))
+        if (!c->skipped && !steps_text_holds(w, line))
             c->skipped = c->open;
     } else if (begins(line, "#else")) {
         c->skipped = c->skipped == c->open ? 0

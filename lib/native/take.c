@@ -36,7 +36,7 @@ static size_t count_kept(const nevh_work *w) {
     return kept;
 }
 
-static size_t take(const nevh_work *w, nevh__steps_call *c) {
+static size_t take_take(const nevh_work *w, nevh__steps_call *c) {
     const nevh__native *x = w->native;
     nevh__compiled_steps compiled = x->steps;
     c->numbers = x->numbers;
@@ -71,7 +71,7 @@ static size_t take_steps(nevh_work *w, nevh__steps_call c) {
         return 0; /* the kernel's step takes those that are missing */
     size_t counted[3] = {0, 0, 0};
     c.counted = counted;
-    size_t done = take(w, &c);
+    size_t done = take_take(w, &c);
     if (x->stages)
         count_sweeps(w, x, counted);
     else if (x->adapts)
@@ -80,7 +80,7 @@ static size_t take_steps(nevh_work *w, nevh__steps_call c) {
     else {
         if (done && done < c.steps) { /* nothing has been stored */
             c.steps = done;
-            done = take(w, &c);
+            done = take_take(w, &c);
         }
         if (done)
             count(w, x, done, kept > 0);
@@ -112,8 +112,8 @@ static bool make_before(before *b, const nevh_work *w) {
 }
 
 /* From the stepper, or back to it. */
-static void keep(before *b, const nevh_work *w, const double q[],
-                 const double p[]) {
+static void take_keep(before *b, const nevh_work *w, const double q[],
+                      const double p[]) {
     memcpy(b->numbers, q, w->size * sizeof *q);
     memcpy(b->numbers + w->size, p, w->size * sizeof *p);
     if (b->memory)
@@ -141,15 +141,15 @@ static void give_back(const before *b, nevh_work *w, double q[], double p[]) {
     w->elapsed = b->elapsed;
 }
 
-static size_t compare(nevh_work *w, before *start, before *native,
-                      nevh__steps_call c) {
+static size_t take_compare(nevh_work *w, before *start, before *native,
+                           nevh__steps_call c) {
     nevh__native *x = w->native;
     double *q = c.q, *p = c.p;
-    keep(start, w, q, p);
+    take_keep(start, w, q, p);
     size_t done = take_steps(w, c), again = 0;
     if (!done)
         return 0;
-    keep(native, w, q, p);
+    take_keep(native, w, q, p);
     give_back(start, w, q, p);
     while (
         again < done &&
@@ -174,7 +174,7 @@ static size_t compare_first(nevh_work *w, nevh__steps_call c) {
     made = make_before(&native, w) && made;
     c.steps = c.steps < most ? c.steps : most;
     if (made)
-        done = compare(w, &start, &native, c);
+        done = take_compare(w, &start, &native, c);
     free_before(&start);
     free_before(&native);
     return done;

@@ -37,7 +37,7 @@ static bool has_constants_near(const nevh__term_loop *x) {
                                                 least + is->count + NEAR);
 }
 
-static bool fits(const nevh__slope_text *s) {
+static bool vector_text_fits(const nevh__slope_text *s) {
     nevh__term_loop x;
     bool exact = s->f->gradient == nevh_exact;
     bool fine = nevh__loop_init(s, &x) && nevh__loop_is_local(&x) &&
@@ -49,7 +49,7 @@ static bool fits(const nevh__slope_text *s) {
     return fine;
 }
 
-static void mark(nevh__vectors *v, size_t variable) {
+static void vector_text_mark(nevh__vectors *v, size_t variable) {
     v->special[variable / LANES] = true;
 }
 
@@ -77,14 +77,14 @@ static void mark_loop(nevh__vectors *v, const nevh__term_loop *x) {
             inside &= at >= base && at - base < count;
         }
         if (!inside || (exact && order_changes(x, at)))
-            mark(v, at);
+            vector_text_mark(v, at);
     }
 }
 
 static void mark_few(nevh__vectors *v, const nevh__slope_text *s) {
     for (size_t i = 0; i < s->term->term->decl.count; i++)
         for (size_t k = nevh__first_of(s); k < nevh__end_of(s); k++)
-            mark(v, nevh__index(s->term, i, k));
+            vector_text_mark(v, nevh__index(s->term, i, k));
 }
 
 static bool mark_all(nevh__vectors *v, const nevh__slope_text *s) {
@@ -93,7 +93,7 @@ static bool mark_all(nevh__vectors *v, const nevh__slope_text *s) {
         mark_few(v, s);
         return true;
     }
-    bool fine = fits(s) && nevh__loop_init(s, &x);
+    bool fine = vector_text_fits(s) && nevh__loop_init(s, &x);
     if (fine) {
         mark_loop(v, &x);
         for (size_t k = 0; k < s->term->nv; k++)
@@ -161,14 +161,15 @@ static void write_part(const nevh__term_loop *x, nevh__vectors *v, size_t k) {
 }
 
 /* In the order of loops: differences' of what is read furthest on first. */
-static void write_parts(const nevh__term_loop *x, nevh__vectors *v) {
+static void vector_text_write_parts(const nevh__term_loop *x,
+                                    nevh__vectors *v) {
     for (size_t shift = x->method ? LANES + 1 : 1; shift-- > 0;)
         for (size_t i = 0; i < x->n_vars; i++)
             if (!x->method || shift_of(x, x->vars[i]) == shift)
                 write_part(x, v, x->vars[i]);
 }
 
-static void write_loads(const nevh__term_loop *x) {
+static void vector_text_write_loads(const nevh__term_loop *x) {
     nevh__writer *w = x->s->w;
     const nevh_term *is = &x->s->term->term->decl;
     size_t first = nevh__loop_constants(x);
@@ -187,13 +188,14 @@ static bool write_pass(nevh__term_loop *x, nevh__vectors *v) {
     x->in_registers = true;
     if (x->n_vars == 0)
         return true;
-    write_loads(x);
+    vector_text_write_loads(x);
     bool fine = nevh__write_loop_body(x);
-    write_parts(x, v);
+    vector_text_write_parts(x, v);
     return fine;
 }
 
-static bool write_term(const nevh__slope_text *s, nevh__vectors *v) {
+static bool vector_text_write_term(const nevh__slope_text *s,
+                                   nevh__vectors *v) {
     nevh__term_loop x;
     bool fine = nevh__loop_init(s, &x);
     if (s->f->gradient == nevh_exact)
@@ -266,7 +268,7 @@ static bool write_function(nevh__writer *w, nevh_field *f, nevh__vectors *v,
     for (size_t i = 0; fine && i < f->n_terms; i++) {
         nevh__slope_text s = {w, f, &f->terms[i], v->kick};
         if (nevh__is_wanted(s.term, s.kick) && nevh__is_loop(s.term))
-            fine = write_term(&s, v);
+            fine = vector_text_write_term(&s, v);
     }
     return fine;
 }

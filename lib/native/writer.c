@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool make_room(nevh__writer *w, size_t more) {
+static bool writer_make_room(nevh__writer *w, size_t more) {
     size_t room = w->room ? w->room : 4096;
     while (room < w->used + more + 1)
         room *= 2;
@@ -26,7 +26,7 @@ void nevh__write(nevh__writer *w, const char *format, ...) {
     va_start(arguments, format);
     va_copy(again, arguments);
     int length = nevh__vprint(NULL, 0, format, arguments);
-    w->failed |= length < 0 || !make_room(w, (size_t)length);
+    w->failed |= length < 0 || !writer_make_room(w, (size_t)length);
     if (!w->failed)
         w->used += (size_t)nevh__vprint(w->text + w->used, w->room - w->used,
                                         format, again);

@@ -99,8 +99,9 @@ static void set_factors(const nevh_stepper *s, double h) {
 }
 
 /* p and its compensation times the factors; whether all p are finite. */
-static bool multiply(const nevh_work *w, struct nevh__friction_step *d,
-                     double compensation[]) {
+static bool friction_step_multiply(const nevh_work *w,
+                                   struct nevh__friction_step *d,
+                                   double compensation[]) {
     double check = 0;
     for (size_t i = 0; i < w->size; i++) {
         double factor = d->factor[i / w->width],
@@ -116,11 +117,12 @@ static bool multiply(const nevh_work *w, struct nevh__friction_step *d,
 }
 
 /* Half a step of friction at time t. */
-static int apply(nevh_stepper *s, double t, double h) {
+static int friction_step_apply(nevh_stepper *s, double t, double h) {
     nevh_work *w = &s->work;
     struct nevh__friction_step *d = s->friction;
     int status = nevh__ledger_add(w, -1, t, d->q, d->p);
-    if (!status && !multiply(w, d, w->memory + w->memory_rows * w->width))
+    if (!status &&
+        !friction_step_multiply(w, d, w->memory + w->memory_rows * w->width))
         status = nevh__fail(&s->report, NEVH_EDOM,
                             "friction over half a step of %g from t = %.9g "
                             "leaves the range of numbers: take a smaller one",
@@ -140,11 +142,11 @@ int nevh__friction_step_apply(nevh_stepper *s, double t, double h, double q[],
     memcpy(d->before, w->memory, memory);
     memcpy(d->q, q, size);
     memcpy(d->p, p, size);
-    int status = apply(s, t, h);
+    int status = friction_step_apply(s, t, h);
     if (!status)
         status = nevh__native_step(w, t, h, d->q, d->p);
     if (!status)
-        status = apply(s, t + h, h);
+        status = friction_step_apply(s, t + h, h);
     if (status) {
         memcpy(w->memory, d->before, memory);
         return status;

@@ -113,7 +113,7 @@ int nevh__span_check(nevh_stepper *s, double t0, double h, double t_end) {
 }
 
 /* After nevh__begin_run. */
-static int run(nevh__running *r) {
+static int orbit_run(nevh__running *r) {
     nevh_stepper *s = r->stepper;
     const nevh_orbit *o = r->orbit;
     nevh__branch b = {.t = nevh__start_time(r), .t_end = o->t_end};
@@ -142,7 +142,7 @@ int nevh_orbit_run(nevh_stepper *s, const nevh_orbit *o, double q[],
                  : nevh_stepper_status(s);
     nevh__running r = {s, o, o->h, q, p, NULL};
     int status = nevh__begin_run(&r);
-    return status ? status : run(&r);
+    return status ? status : orbit_run(&r);
 }
 
 int nevh_run_until(nevh_stepper *s, double t0, double h, double t_end,
@@ -157,8 +157,8 @@ typedef struct {
     size_t count, kept, n;
 } table;
 
-static int keep(void *data, size_t i, double t, const double q[],
-                const double p[]) {
+static int orbit_keep(void *data, size_t i, double t, const double q[],
+                      const double p[]) {
     table *a = data;
     (void)t;
     for (size_t k = 0; k < a->n; k++) {
@@ -176,8 +176,8 @@ int nevh_run_at(nevh_stepper *s, double t0, double h, double t_end,
     if (s && s->planned && count > 0 && !times)
         return nevh__fail(&s->report, NEVH_EINVAL, "there are no times");
     table a = {states, count, 0, s ? s->work.n : 0};
-    nevh_orbit o = {t0,    h,     t_end, observers, n_observers,
-                    times, count, keep,  &a,        .steps_before = 0};
+    nevh_orbit o = {t0,    h,     t_end,      observers, n_observers,
+                    times, count, orbit_keep, &a,        .steps_before = 0};
     int status = nevh_orbit_run(s, &o, q, p);
     if (kept)
         *kept = a.kept;

@@ -37,7 +37,7 @@ static bool is_left(const nevh__samples *a) {
 }
 
 /* Times that only rounding makes different. */
-static bool same(const nevh__samples *a, double t, double u) {
+static bool run_at_same(const nevh__samples *a, double t, double u) {
     double size = fabs(t) + fabs(u) + fabs(a->h);
     return t == u || fabs(t - u) < 8 * DBL_EPSILON * size;
 }
@@ -47,10 +47,10 @@ static bool is_due(const nevh__samples *a, double t) {
     if (!is_left(a))
         return false;
     double due = time_of(a, a->next);
-    return (t - due) * a->h > 0 && !same(a, due, t);
+    return (t - due) * a->h > 0 && !run_at_same(a, due, t);
 }
 
-static int put(nevh__samples *a, const double q[], const double p[]) {
+static int run_at_put(nevh__samples *a, const double q[], const double p[]) {
     const nevh_orbit *o = a->run->orbit;
     size_t i = a->next++;
     double t = time_of(a, i);
@@ -69,7 +69,7 @@ static int branch_before(nevh__samples *a, double t) {
             a->from.h = a->from.t_end - a->from.t;
         status = nevh__branch_step(&a->from);
         if (!status)
-            status = put(a, a->from.q_end, a->from.p_end);
+            status = run_at_put(a, a->from.q_end, a->from.p_end);
     }
     return status;
 }
@@ -77,8 +77,8 @@ static int branch_before(nevh__samples *a, double t) {
 static int put_here(nevh__samples *a, double t, const double q[],
                     const double p[]) {
     int status = NEVH_OK;
-    while (!status && is_left(a) && same(a, time_of(a, a->next), t))
-        status = put(a, q, p);
+    while (!status && is_left(a) && run_at_same(a, time_of(a, a->next), t))
+        status = run_at_put(a, q, p);
     return status;
 }
 
@@ -120,7 +120,7 @@ static int read_next(nevh__samples *a) {
     b->h = due - b->t;
     int status = nevh__branch_step(b);
     if (!status)
-        status = put(a, b->q_end, b->p_end);
+        status = run_at_put(a, b->q_end, b->p_end);
     if (!status && !read)
         nevh__branch_keep(&a->tried, due, b->q_end, b->p_end);
     return status;
@@ -198,7 +198,7 @@ size_t nevh__samples_step(const nevh__samples *a) {
     return a->step;
 }
 
-static int check(const nevh__samples *a) {
+static int run_at_check(const nevh__samples *a) {
     const nevh_orbit *o = a->run->orbit;
     nevh__report *r = &a->stepper->report;
     double last = o->t0;
@@ -223,13 +223,13 @@ static int check(const nevh__samples *a) {
     return NEVH_OK;
 }
 
-static int plan(nevh__samples *a) {
+static int run_at_plan(nevh__samples *a) {
     nevh_stepper *s = a->stepper;
     double steps;
     if (!s->own_time)
         nevh__whole_steps(a->run->orbit->t_end - a->run->orbit->t0, &a->h,
                           &steps);
-    int status = check(a);
+    int status = run_at_check(a);
     if (!status)
         status = nevh__branch_open(&a->from, s);
     if (!status)
@@ -247,7 +247,7 @@ nevh__samples *nevh__samples_new(const nevh__running *r) {
                          .stepper = r->stepper,
                          .h = r->orbit->h,
                          .next = r->orbit->samples_before};
-    if (!plan(a))
+    if (!run_at_plan(a))
         return a;
     nevh__samples_free(a);
     return NULL;

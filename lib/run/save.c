@@ -12,7 +12,7 @@ typedef struct {
     double last_t, time_roundoff;
 } header;
 
-static header describe(const nevh_stepper *s) {
+static header save_describe(const nevh_stepper *s) {
     header h = {.magic = "nevh-2", .has_last = s->has_last || s->now_q};
     strncpy(h.integrator, s->work.integrator->name, sizeof h.integrator - 1);
     h.n = s->work.n;
@@ -58,7 +58,7 @@ void nevh_stepper_save(const nevh_stepper *s, void *buffer) {
     memset(to, 0, nevh_stepper_save_size(s));
     if (!s->planned)
         return;
-    header h = describe(s);
+    header h = save_describe(s);
     memcpy(to, &h, sizeof h);
     to += sizeof h;
     list_parts(s, part, size);
@@ -72,7 +72,7 @@ int nevh_stepper_load(nevh_stepper *s, const void *buffer, size_t size) {
         return NEVH_EINVAL;
     if (!s->planned)
         return s->report.status;
-    header own = describe(s), h;
+    header own = save_describe(s), h;
     if (size != nevh_stepper_save_size(s))
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "a saved memory of %zu bytes, where %s has %zu", size,

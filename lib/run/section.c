@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int check(nevh_sections *x, const nevh_section *decl, size_t number) {
+static int section_check(nevh_sections *x, const nevh_section *decl,
+                         size_t number) {
     if (decl->value ? decl->every == 0
                     : decl->every > 0 && isfinite(decl->every)) {
         if (decl->period >= 0 && isfinite(decl->period) &&
@@ -34,7 +35,7 @@ static int plan_state(nevh_sections *x, size_t i, const nevh_section *decl) {
     x->crossings |= decl->value != NULL;
     if (!k->q || !k->p || (decl->name && !k->decl.name))
         return nevh__no_memory(&x->report);
-    return check(x, decl, i);
+    return section_check(x, decl, i);
 }
 
 /* GSL aborts where memory is out: ask first for more than it takes. */
@@ -63,7 +64,7 @@ static int plan_states(nevh_sections *x) {
     return NEVH_OK;
 }
 
-static int plan(nevh_sections *x, const nevh_section sections[]) {
+static int section_plan(nevh_sections *x, const nevh_section sections[]) {
     const nevh_stepper *s = x->branch;
     if (nevh_stepper_status(s))
         return nevh__fail_as(&x->report, &s->report);
@@ -89,7 +90,8 @@ nevh_sections *nevh_sections_new(const nevh_stepper *stepper,
     x->data = data;
     x->states = nevh__array(count, sizeof *x->states);
     x->count = x->states ? count : 0;
-    int status = x->branch && x->states ? plan(x, sections) : NEVH_ENOMEM;
+    int status =
+        x->branch && x->states ? section_plan(x, sections) : NEVH_ENOMEM;
     x->planned = status == NEVH_OK;
     if (status != NEVH_ENOMEM)
         return x;
@@ -125,8 +127,8 @@ nevh_counts nevh_sections_counts(const nevh_sections *x) {
 }
 
 /* The state, from which the next step begins. */
-static void keep(nevh_sections *x, double t, const double q[],
-                 const double p[]) {
+static void section_keep(nevh_sections *x, double t, const double q[],
+                         const double p[]) {
     const nevh_stepper *s = x->stepper;
     size_t size = s->work.size * sizeof(double);
     x->t = t;
@@ -135,15 +137,15 @@ static void keep(nevh_sections *x, double t, const double q[],
     memcpy(x->memory, s->work.memory, s->rows * s->work.width * sizeof(double));
 }
 
-static bool goes_on(const nevh_sections *x, double t, const double q[],
-                    const double p[]) {
+static bool section_goes_on(const nevh_sections *x, double t, const double q[],
+                            const double p[]) {
     size_t size = x->stepper->work.size * sizeof(double);
     return x->begun && t == x->t && memcmp(q, x->q, size) == 0 &&
            memcmp(p, x->p, size) == 0;
 }
 
-static int begin(nevh_sections *x, double t, const double q[],
-                 const double p[]) {
+static int section_begin(nevh_sections *x, double t, const double q[],
+                         const double p[]) {
     int status = NEVH_OK;
     x->begun = x->first = true;
     x->origin = t;
@@ -198,7 +200,7 @@ static void find_slopes_after(nevh_sections *x) {
 }
 
 /* The first point of each section within the step. */
-static int look(nevh_sections *x, nevh__section_state *k) {
+static int section_look(nevh_sections *x, nevh__section_state *k) {
     int status = NEVH_OK;
     k->piece = 0;
     k->opened = false;
@@ -215,7 +217,7 @@ static nevh__section_state *earliest(nevh_sections *x) {
     return first;
 }
 
-static int tell(nevh_sections *x) {
+static int section_tell(nevh_sections *x) {
     int status = NEVH_OK;
     nevh__section_state *k;
     while (!status && (k = earliest(x))) {
@@ -233,11 +235,11 @@ int nevh__sections_search(nevh_sections *x) {
     int status = NEVH_OK;
     x->tried = NAN;
     for (size_t i = 0; !status && i < x->count; i++)
-        status = look(x, &x->states[i]);
-    return status ? status : tell(x);
+        status = section_look(x, &x->states[i]);
+    return status ? status : section_tell(x);
 }
 
-static int search(nevh_sections *x) {
+static int section_search(nevh_sections *x) {
     int status = NEVH_OK;
     for (size_t i = 0; !status && i < x->count; i++) {
         nevh__section_state *k = &x->states[i];
@@ -261,7 +263,7 @@ static int pass(nevh_sections *x, double t, const double q[],
     x->q_after = q;
     x->p_after = p;
     x->memory_after = x->stepper->work.memory;
-    int status = search(x);
+    int status = section_search(x);
     for (nevh__section_state *k = x->states; k < x->states + x->count; k++) {
         k->value = k->value_after;
         k->slope = k->slope_after;
@@ -276,10 +278,10 @@ int nevh_sections_observe(void *sections, size_t step, double t,
     if (!x || !x->planned)
         return nevh_sections_status(x);
     int status = NEVH_OK;
-    bool starts = step == 0 && !goes_on(x, t, q, p);
+    bool starts = step == 0 && !section_goes_on(x, t, q, p);
     x->report = (nevh__report){0};
     if (starts)
-        status = begin(x, t, q, p);
+        status = section_begin(x, t, q, p);
     else if (step > 0 && (!x->begun || step != x->step + 1))
         status = nevh__fail(&x->report, NEVH_EINVAL,
                             "sections are to be shown every step, not step %zu "
@@ -287,7 +289,7 @@ int nevh_sections_observe(void *sections, size_t step, double t,
                             step, x->step);
     else if (step > 0)
         status = pass(x, t, q, p);
-    keep(x, t, q, p);
+    section_keep(x, t, q, p);
     x->step = step;
     x->begun = status == NEVH_OK || status == NEVH_STOPPED;
     return status;

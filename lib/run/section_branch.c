@@ -10,7 +10,8 @@ enum { MOST_TRIALS = 100 };
 static const double certain = 4 * DBL_EPSILON; /* part of a step */
 static const double jump = 0.01; /* of the difference of the ends */
 
-static bool holds(const nevh_sections *x, const double memory[], double h) {
+static bool section_branch_holds(const nevh_sections *x, const double memory[],
+                                 double h) {
     const nevh_work *w = &x->branch->work;
     const nevh_kernel *kernel = w->integrator->kernel;
     return kernel->holds && kernel->holds(w, memory, h);
@@ -28,15 +29,17 @@ static void branch_off(nevh_sections *x, const double q[], const double p[],
 /* The part of the step at hand, as a time, from whose end one of h is to branch
    off: the last such step or the whole one, where its memory holds the orbit. */
 static double branch_at(const nevh_sections *x, double h) {
-    if (holds(x, x->memory, h))
+    if (section_branch_holds(x, x->memory, h))
         return 0;
-    if (holds(x, x->memory_after, h - x->h))
+    if (section_branch_holds(x, x->memory_after, h - x->h))
         return x->h;
-    return holds(x, x->branch->work.memory, h - x->tried) ? x->tried : 0;
+    return section_branch_holds(x, x->branch->work.memory, h - x->tried)
+               ? x->tried
+               : 0;
 }
 
 /* A step of h from where the step at hand begins to q_try, p_try. */
-static int take_step(nevh_sections *x, double h) {
+static int section_branch_take_step(nevh_sections *x, double h) {
     nevh_stepper *s = x->branch;
     double from = branch_at(x, h);
     if (from == 0)
@@ -81,14 +84,15 @@ int nevh__section_value(nevh_sections *x, const nevh__section_state *k,
 int nevh__section_sample(nevh_sections *x, const nevh__section_state *k,
                          double s, double *value) {
     *value = NAN;
-    int status = take_step(x, s * x->h);
+    int status = section_branch_take_step(x, s * x->h);
     return status ? status
                   : nevh__section_value(x, k, x->branch->last_t, x->q_try,
                                         x->p_try, value);
 }
 
-static void keep(nevh_sections *x, nevh__section_state *k, double s, double t,
-                 const double q[], const double p[]) {
+static void section_branch_keep(nevh_sections *x, nevh__section_state *k,
+                                double s, double t, const double q[],
+                                const double p[]) {
     size_t size = x->branch->work.size * sizeof(double);
     k->found = true;
     k->s = s;
@@ -100,11 +104,12 @@ static void keep(nevh_sections *x, nevh__section_state *k, double s, double t,
 int nevh__section_take(nevh_sections *x, nevh__section_state *k, double h) {
     int status = NEVH_OK;
     if (h == 0)
-        keep(x, k, 0, x->t, x->q, x->p);
+        section_branch_keep(x, k, 0, x->t, x->q, x->p);
     else if (h == x->h)
-        keep(x, k, 1, x->t_after, x->q_after, x->p_after);
-    else if (!(status = take_step(x, h)))
-        keep(x, k, h / x->h, x->branch->last_t, x->q_try, x->p_try);
+        section_branch_keep(x, k, 1, x->t_after, x->q_after, x->p_after);
+    else if (!(status = section_branch_take_step(x, h)))
+        section_branch_keep(x, k, h / x->h, x->branch->last_t, x->q_try,
+                            x->p_try);
     return status;
 }
 
@@ -116,7 +121,7 @@ typedef struct {
 } search;
 
 /* Finite whatever happens, since GSL aborts otherwise; the ends are known. */
-static double miss(double s, void *data) {
+static double section_branch_miss(double s, void *data) {
     search *r = data;
     nevh_sections *x = r->x;
     double value;
@@ -132,14 +137,14 @@ static double miss(double s, void *data) {
         return r->a.value;
     if (r->last <= r->best) {
         r->best = r->last;
-        keep(x, r->k, s, x->branch->last_t, x->q_try, x->p_try);
+        section_branch_keep(x, r->k, s, x->branch->last_t, x->q_try, x->p_try);
     }
     return value - r->level;
 }
 
-static void narrow(search *r) {
+static void section_branch_narrow(search *r) {
     gsl_root_fsolver *root = r->x->root;
-    gsl_function f = {miss, r};
+    gsl_function f = {section_branch_miss, r};
     int status = gsl_root_fsolver_set(root, &f, r->a.s, r->b.s);
     for (int i = 0; !status && r->best > 0 && i < MOST_TRIALS; i++) {
         status = gsl_root_fsolver_iterate(root);
@@ -158,7 +163,7 @@ int nevh__section_search(nevh_sections *x, nevh__section_state *k,
     r.b.value -= level;
     r.best = INFINITY;
     k->found = false;
-    narrow(&r);
+    section_branch_narrow(&r);
     k->found &=
         r.last <= jump * (fabs(a.value - level) + fabs(b.value - level));
     return x->report.status;

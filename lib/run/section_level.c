@@ -63,7 +63,7 @@ static int open_piece(nevh_sections *x, nevh__section_state *k) {
 }
 
 /* The point at the next level of the open piece. */
-static int locate(nevh_sections *x, nevh__section_state *k) {
+static int section_level_locate(nevh_sections *x, nevh__section_state *k) {
     nevh__section_node a = k->nodes[k->piece], b = k->nodes[k->piece + 1];
     double level = k->level * k->decl.period;
     int status;
@@ -86,7 +86,7 @@ static int next_crossing(nevh_sections *x, nevh__section_state *k) {
         k->direction = k->way * forward;
         if (!status && k->left > 0) {
             if (k->decl.direction != -k->direction)
-                status = locate(x, k);
+                status = section_level_locate(x, k);
             k->level += k->way;
             k->left--;
         } else {

@@ -30,7 +30,7 @@ static cubic model_of(double begin, double end, double slope_at_begin,
                    slope_at_begin, begin};
 }
 
-static double at(const cubic *m, double s) {
+static double section_turn_at(const cubic *m, double s) {
     return ((m->a * s + m->b) * s + m->c) * s + m->d;
 }
 
@@ -77,7 +77,7 @@ static bool same_side(const dip *d, double value) {
 
 /* Makes `least` smaller than both neighbours: if the minimum is next to an end, by
    a point very close to that end.  Otherwise there is no minimum. */
-static int enclose(dip *d) {
+static int section_turn_enclose(dip *d) {
     double below = d->sign * (d->low.value - d->least.value);
     double above = d->sign * (d->high.value - d->least.value);
     if ((below > 0) == (above > 0))
@@ -89,7 +89,7 @@ static int enclose(dip *d) {
     return nevh__section_sample(d->x, d->k, next.s, &d->least.value);
 }
 
-static double height(double s, void *data) {
+static double section_turn_height(double s, void *data) {
     dip *d = data;
     double value;
     if (d->x->report.status || nevh__section_sample(d->x, d->k, s, &value))
@@ -100,7 +100,7 @@ static double height(double s, void *data) {
 /* Goes down until the level is passed, or to the minimum. */
 static int descend(dip *d) {
     gsl_min_fminimizer *m = d->x->least;
-    gsl_function f = {height, d};
+    gsl_function f = {section_turn_height, d};
     if (!(d->sign * d->least.value < d->sign * d->low.value &&
           d->sign * d->least.value < d->sign * d->high.value))
         return NEVH_OK;
@@ -128,7 +128,7 @@ static int dig(nevh_sections *x, nevh__section_state *k, size_t i,
     if (!same_side(&d, d.low.value) || !same_side(&d, d.high.value))
         return NEVH_OK;
     double before = d.least.value;
-    int status = enclose(&d);
+    int status = section_turn_enclose(&d);
     if (!status && same_side(&d, before))
         status = descend(&d);
     k->nodes[i] = d.least;
@@ -155,7 +155,7 @@ static int add_nodes(nevh_sections *x, nevh__section_state *k, const cubic *m,
         gsl_poly_solve_quadratic(3 * m->a, 2 * m->b, m->c, &turn[0], &turn[1]);
     for (int i = 0; !status && i < turns; i++)
         if (turn[i] >= -beyond && turn[i] <= 1 + beyond &&
-            matters(k, at(m, fmin(fmax(turn[i], 0), 1)))) {
+            matters(k, section_turn_at(m, fmin(fmax(turn[i], 0), 1)))) {
             sign[k->n_nodes] = 6 * m->a * turn[i] + 2 * m->b < 0 ? -1 : 1;
             status = add_node(x, k, turn[i]);
         }

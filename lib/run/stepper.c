@@ -22,7 +22,7 @@ static bool own_options(nevh_options *o, size_t n) {
     return copy_array(&o->p, n * o->width) && all;
 }
 
-static int plan_memory(nevh_stepper *s) {
+static int stepper_plan_memory(nevh_stepper *s) {
     nevh_work *w = &s->work;
     s->fresh_rows = w->memory_rows + (s->friction ? w->n : 0) +
                     (w->transform ? NEVH__TRANSFORM_ROWS : 0);
@@ -38,7 +38,7 @@ static int plan_memory(nevh_stepper *s) {
     return nevh__no_memory(&s->report);
 }
 
-static int plan_field(nevh_stepper *s) {
+static int stepper_plan_field(nevh_stepper *s) {
     nevh_work *w = &s->work;
     if (w->integrator->needs_formulas) /* it takes no gradient */
         s->options.gradient = nevh__best_gradient(w->system);
@@ -56,7 +56,8 @@ static int plan_field(nevh_stepper *s) {
                : NEVH_OK;
 }
 
-static int check_options(nevh_stepper *s, const nevh_integrator *integrator) {
+static int stepper_check_options(nevh_stepper *s,
+                                 const nevh_integrator *integrator) {
     const nevh_work *w = &s->work;
     double tolerance = s->options.tolerance;
     if (!integrator)
@@ -99,19 +100,19 @@ static int plan_parts(nevh_stepper *s) {
     return status;
 }
 
-static int plan(nevh_stepper *s) {
+static int stepper_plan(nevh_stepper *s) {
     const nevh_work *w = &s->work;
     if (w->system->report.status)
         return nevh__fail_as(&s->report, &w->system->report);
-    int status = check_options(s, w->integrator);
+    int status = stepper_check_options(s, w->integrator);
     if (!status)
-        status = plan_field(s);
+        status = stepper_plan_field(s);
     if (!status)
         status = nevh__check_structure(s);
     if (!status)
         status = plan_parts(s);
     if (!status)
-        status = plan_memory(s);
+        status = stepper_plan_memory(s);
     if (!status)
         nevh__native_plan(&s->work, s->watched, s->why_native);
     return status;
@@ -142,7 +143,7 @@ nevh_stepper *nevh__stepper_watching(const nevh_system *system,
                           .report = &s->report};
     fenv_t own; /* trial states may overflow: no exception is trapped */
     feholdexcept(&own);
-    int status = owned ? plan(s) : NEVH_ENOMEM;
+    int status = owned ? stepper_plan(s) : NEVH_ENOMEM;
     fesetenv(&own);
     s->planned = status == NEVH_OK;
     s->revision = s->options.transform ? s->options.transform->revision : 0;

@@ -27,9 +27,9 @@ static bool find_functions(nevh__code *code) {
     return code->value;
 }
 
-static const char *load(const char *path, const char *folder,
-                        const char *object, const sigset_t *before,
-                        nevh__code *code) {
+static const char *code_load(const char *path, const char *folder,
+                             const char *object, const sigset_t *before,
+                             nevh__code *code) {
     nevh__compiling run;
     nevh__compile_begin(&(nevh__compilation){flags, path, object, folder},
                         before, &run);
@@ -63,7 +63,7 @@ bool nevh__code_load(const char *path, nevh__code *code, const char **what) {
     char *folder = nevh__new_folder();
     char *object = folder ? nevh__text("%s/term.so", folder) : NULL;
     *code = (nevh__code){0};
-    *what = object ? load(path, folder, object, &before, code)
+    *what = object ? code_load(path, folder, object, &before, code)
                    : "%s needs a folder to be compiled in, and none can be "
                      "made: TMPDIR=... may name one";
     if (folder)

@@ -18,8 +18,8 @@ typedef struct {
     size_t nq, np, nc;
 } handed;
 
-static double value(double t, const double q[], const double p[],
-                    const double c[], const void *params) {
+static double code_term_value(double t, const double q[], const double p[],
+                              const double c[], const void *params) {
     const handed *h = params;
     return h->code->value(t, q, p, c);
 }
@@ -178,8 +178,9 @@ static bool read_names(nevh_scene *s, nevh__scene_model *m,
 }
 
 /* file("NAME" AFTER): the name and what follows it up to the last ")". */
-static bool cut(nevh_scene *s, nevh__scene_model *m, const nevh__piece *value,
-                nevh__piece *name, nevh__piece *after) {
+static bool code_term_cut(nevh_scene *s, nevh__scene_model *m,
+                          const nevh__piece *value, nevh__piece *name,
+                          nevh__piece *after) {
     size_t at = (size_t)(value->at - value->line->text),
            bytes = strlen(value->text);
     const char *open = strchr(value->text, '"');
@@ -224,7 +225,8 @@ static bool digest_file(nevh_scene *s, const nevh__piece *name,
     return true;
 }
 
-static bool load(nevh_scene *s, const nevh__piece *name, nevh__code *code) {
+static bool code_term_load(nevh_scene *s, const nevh__piece *name,
+                           nevh__code *code) {
     const char *what = NULL;
     if (!s->allow_code)
         return nevh__scene_fail(s, NEVH_EINVAL, name,
@@ -260,7 +262,7 @@ static nevh__code *code_of(nevh_scene *s, const nevh__statement *statement) {
     return s->codes ? s->codes[at] : NULL;
 }
 
-static bool reserve(nevh_scene *s, nevh__scene_model *m, reading *r) {
+static bool code_term_reserve(nevh_scene *s, nevh__scene_model *m, reading *r) {
     r->q = nevh__pool_take(&m->pool, m->n, sizeof *r->q);
     r->p = nevh__pool_take(&m->pool, m->n, sizeof *r->p);
     r->c = nevh__pool_take(&m->pool, MOST_READ, sizeof *r->c);
@@ -271,8 +273,9 @@ static bool has_gradient(const handed *h) {
     return h->code->gradient && h->nq <= MOST_READ && h->np <= MOST_READ;
 }
 
-static bool add(nevh_scene *s, nevh__scene_model *m, const char *effect,
-                const reading *r, const nevh__code *code) {
+static bool code_term_add(nevh_scene *s, nevh__scene_model *m,
+                          const char *effect, const reading *r,
+                          const nevh__code *code) {
     handed *h = nevh__pool_take(&m->pool, 1, sizeof *h);
     if (!h)
         return nevh__scene_no_memory(s);
@@ -285,7 +288,7 @@ static bool add(nevh_scene *s, nevh__scene_model *m, const char *effect,
                       .p = r->p,
                       .c = r->nc ? r->c : NULL,
                       .time = r->time,
-                      .value = value,
+                      .value = code_term_value,
                       .gradient = has_gradient(h) ? gradient : NULL,
                       .params = h};
     return !nevh_system_add(m->system, &term) || nevh__scene_no_memory(s);
@@ -303,19 +306,19 @@ bool nevh__model_code(nevh_scene *s, nevh__scene_model *m,
     nevh__code *code = code_of(s, statement);
     if (!code)
         return nevh__scene_no_memory(s);
-    if (!cut(s, m, &statement->value, &name, &after) || !reserve(s, m, &r) ||
-        !read_names(s, m, &after, &r))
+    if (!code_term_cut(s, m, &statement->value, &name, &after) ||
+        !code_term_reserve(s, m, &r) || !read_names(s, m, &after, &r))
         return false;
     bool on = nevh__scene_effect(s, statement->head.name)->on;
-    return (!on || code->value || load(s, &name, code)) &&
-           add(s, m, statement->head.name, &r, code);
+    return (!on || code->value || code_term_load(s, &name, code)) &&
+           code_term_add(s, m, statement->head.name, &r, code);
 }
 
 /* The terms that waited for it get its gradient. */
 static void announce(nevh__scene_model *m, const nevh__code *code) {
     for (size_t i = 0; i < m->system->n_terms; i++) {
         nevh_term *decl = &m->system->terms[i]->decl;
-        if (decl->value != value)
+        if (decl->value != code_term_value)
             continue;
         const handed *h = decl->params;
         if (h->code == code && has_gradient(h))
@@ -331,7 +334,8 @@ static bool load_statement(nevh_scene *s, nevh__scene_model *m,
         return nevh__scene_no_memory(s);
     if (code->value)
         return true;
-    if (!cut(s, m, &statement->value, &name, &after) || !load(s, &name, code))
+    if (!code_term_cut(s, m, &statement->value, &name, &after) ||
+        !code_term_load(s, &name, code))
         return false;
     announce(m, code);
     return true;

@@ -53,7 +53,7 @@ static bool reserve_exact(nevh__scene_model *m) {
     return true;
 }
 
-static bool reserve(nevh_scene *s, nevh__scene_model *m) {
+static bool coordinates_reserve(nevh_scene *s, nevh__scene_model *m) {
     m->coordinate_names = nevh__pool_take(&m->pool, m->n, sizeof(char *));
     m->q = nevh__pool_take(&m->pool, m->n, sizeof *m->q);
     m->p = nevh__pool_take(&m->pool, m->n, sizeof *m->p);
@@ -76,7 +76,7 @@ bool nevh__model_coordinates(nevh_scene *s, nevh__scene_model *m) {
     if (!m->n)
         return nevh__scene_fail_at(s, NEVH_EINVAL, &s->lines[s->n_lines - 1], 1,
                                    0, "there are no [coordinates]");
-    if (!reserve(s, m))
+    if (!coordinates_reserve(s, m))
         return false;
     for (size_t i = 0; i < m->n_coordinates; i++)
         if (!add_names(s, m, &m->coordinates[i]))

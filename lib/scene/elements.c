@@ -40,8 +40,8 @@ bool nevh__is_elements(const nevh__piece *value) {
 #define ECCENTRIC(M, e) nevh__operation_wide(NEVH__ECCENTRIC, M, e)
 #include "scene/elements_text.h"
 
-static bool check(nevh_scene *s, const nevh__statement *one,
-                  const nevh__piece arguments[], const double *x) {
+static bool elements_check(nevh_scene *s, const nevh__statement *one,
+                           const nevh__piece arguments[], const double *x) {
     if (!(x[E] >= 0 && x[E] < 1))
         return nevh__scene_fail(s, NEVH_EINVAL, &arguments[E],
                                 "elements are of ellipses, 0 <= e < 1, and e "
@@ -91,7 +91,7 @@ bool nevh__elements_values(nevh_scene *s, nevh__scene_model *m,
             x[i] = all.near[i * count + k];
             wide[i] = all.wide ? all.wide[i * count + k] : 0;
         }
-        if (!check(s, one, arguments, x))
+        if (!elements_check(s, one, arguments, x))
             return false;
         place(x, one->member, &q.near[k], &v.near[k]);
         if (all.wide)

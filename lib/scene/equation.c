@@ -23,7 +23,7 @@ static const char *section_of(const nevh__statement *one) {
 
 /* The i-th statement that is one; NULL when i is out of range.  A line that
    several names share is one. */
-static const nevh__statement *find(const nevh_scene *s, size_t i) {
+static const nevh__statement *equation_find(const nevh_scene *s, size_t i) {
     size_t count = s ? s->n_statements : 0;
     for (size_t k = 0; k < count; k++)
         if (section_of(&s->statements[k]) && s->statements[k].member == 0 &&
@@ -34,7 +34,7 @@ static const nevh__statement *find(const nevh_scene *s, size_t i) {
 
 size_t nevh_scene_equation_count(const nevh_scene *s) {
     size_t i = 0;
-    while (find(s, i))
+    while (equation_find(s, i))
         i++;
     return i;
 }
@@ -49,7 +49,7 @@ static const nevh__statement *given(const nevh_scene *s,
 }
 
 nevh_scene_equation nevh_scene_equation_at(const nevh_scene *s, size_t i) {
-    const nevh__statement *one = find(s, i);
+    const nevh__statement *one = equation_find(s, i);
     if (!one)
         return (nevh_scene_equation){0};
     bool switched =
@@ -81,7 +81,7 @@ static nevh__tree *parse(const nevh__statement *one) {
 }
 
 char *nevh_scene_equation_mathml(const nevh_scene *s, size_t i) {
-    const nevh__statement *one = find(s, i);
+    const nevh__statement *one = equation_find(s, i);
     nevh__tree *tree = one ? parse(given(s, one)) : NULL;
     char *text = tree ? nevh__equation_mathml(one->key.text, tree) : NULL;
     nevh__tree_free(tree);

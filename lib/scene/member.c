@@ -10,15 +10,15 @@ uint64_t nevh_scene_members(const nevh_scene *s) {
                : 0;
 }
 
-static int refuse(nevh_scene *s, int status, const char *why) {
+static int member_refuse(nevh_scene *s, int status, const char *why) {
     s->status = status;
     snprintf(s->message, sizeof s->message, "%s", why);
     return status;
 }
 
 /* Fails unless the member's parameters change only the start. */
-static int compare(nevh_sweep *s, const nevh__variant *x,
-                   nevh__report *report) {
+static int member_compare(nevh_sweep *s, const nevh__variant *x,
+                          nevh__report *report) {
     nevh__variant own;
     bool alike = nevh__variant_make(s, NULL, &own, report) &&
                  nevh__variants_alike(s, &own, x);
@@ -31,8 +31,9 @@ static int compare(nevh_sweep *s, const nevh__variant *x,
     return report->status;
 }
 
-static int find(nevh_sweep *s, uint64_t member, double varied[], double q[],
-                double p[], double v[], nevh__report *report) {
+static int member_find(nevh_sweep *s, uint64_t member, double varied[],
+                       double q[], double p[], double v[],
+                       nevh__report *report) {
     const nevh__scene_ensemble *e = s->ensemble;
     nevh__variant x;
     for (size_t i = 0; i < e->n_varied; i++)
@@ -40,7 +41,7 @@ static int find(nevh_sweep *s, uint64_t member, double varied[], double q[],
     int status =
         nevh__variant_make(s, varied, &x, report) ? NEVH_OK : report->status;
     if (!status && e->parameters)
-        status = compare(s, &x, report);
+        status = member_compare(s, &x, report);
     if (!status)
         status = nevh__variant_start(s, &x, varied, q, p, v, report);
     nevh__variant_free(&x);
@@ -55,9 +56,10 @@ int nevh_scene_member_start(nevh_scene *s, uint64_t member, double q[],
     nevh_sweep sweep = {.scene = s, .ensemble = s->model->ensemble};
     double *varied = nevh__array(sweep.ensemble->n_varied, sizeof *varied);
     double *v = nevh__array(s->model->n, sizeof *v);
-    int status = varied && v ? find(&sweep, member, varied, q, p, v, &report)
-                             : nevh__no_memory(&report);
+    int status = varied && v
+                     ? member_find(&sweep, member, varied, q, p, v, &report)
+                     : nevh__no_memory(&report);
     free(varied);
     free(v);
-    return status ? refuse(s, status, report.text) : NEVH_OK;
+    return status ? member_refuse(s, status, report.text) : NEVH_OK;
 }

@@ -12,7 +12,7 @@ typedef struct {
     size_t size, used;
 } buffer;
 
-static void append(buffer *b, const char *bytes, size_t count) {
+static void message_append(buffer *b, const char *bytes, size_t count) {
     size_t left = b->size - b->used - 1;
     count = count < left ? count : left;
     memcpy(b->text + b->used, bytes, count);
@@ -21,14 +21,14 @@ static void append(buffer *b, const char *bytes, size_t count) {
 }
 
 /* Bytes of the character at `text`; one of what is none. */
-static size_t step(const char *text) {
+static size_t message_step(const char *text) {
     uint32_t code;
     size_t bytes = nevh__character(text, &code);
     return bytes ? bytes : 1;
 }
 
 /* The text to print for a character: "?" for one that is not safe. */
-static const char *shown(const char *at) {
+static const char *message_shown(const char *at) {
     uint32_t code;
     bool control = (unsigned char)*at < ' ' && *at != '\t';
     bool broken = nevh__character(at, &code) == 0;
@@ -40,13 +40,13 @@ static const char *shown(const char *at) {
 static void append_marks(buffer *b, const char *at, const char *last,
                          size_t place, size_t length) {
     for (; place > 0; place--) {
-        append(b, at < last && *at == '\t' ? "\t" : " ", 1);
-        at += at < last ? step(at) : 0;
+        message_append(b, at < last && *at == '\t' ? "\t" : " ", 1);
+        at += at < last ? message_step(at) : 0;
     }
-    append(b, "^", 1);
-    at += at < last ? step(at) : 0;
-    for (; length > 1 && at < last; length--, at += step(at))
-        append(b, "~", 1);
+    message_append(b, "^", 1);
+    at += at < last ? message_step(at) : 0;
+    for (; length > 1 && at < last; length--, at += message_step(at))
+        message_append(b, "~", 1);
 }
 
 /* The line around a column, then the same width of space and a caret. */
@@ -55,14 +55,15 @@ static void append_line(buffer *b, const nevh__line *line, size_t column,
     const char *end = line->text + line->bytes, *at = line->text;
     size_t skip = column > SHOWN ? column - BEFORE : 0, here = 1;
     for (; here <= skip && at < end; here++)
-        at += step(at);
+        at += message_step(at);
     const char *from = at;
-    append(b, "\n", 1);
-    append(b, "...", skip ? 3 : 0);
-    for (size_t k = 0; k < SHOWN && at < end; k++, at += step(at))
-        append(b, shown(at), *shown(at) == '?' ? 1 : step(at));
-    append(b, "\n", 1);
-    append(b, "   ", skip ? 3 : 0);
+    message_append(b, "\n", 1);
+    message_append(b, "...", skip ? 3 : 0);
+    for (size_t k = 0; k < SHOWN && at < end; k++, at += message_step(at))
+        message_append(b, message_shown(at),
+                       *message_shown(at) == '?' ? 1 : message_step(at));
+    message_append(b, "\n", 1);
+    message_append(b, "   ", skip ? 3 : 0);
     append_marks(b, from, at, column > here ? column - here : 0, length);
 }
 
@@ -76,18 +77,19 @@ bool nevh__scene_fail_at(nevh_scene *s, int status, const nevh__line *line,
     snprintf(place, sizeof place,
              ":%zu:%zu: error: ", line->number ? line->number : 1, column);
     size_t left = strlen(s->name);
-    append(&b, line->number ? s->name : "assignment",
-           line->number ? (left < TEXT ? left : TEXT) : strlen("assignment"));
-    append(&b, place, strlen(place));
-    append(&b, text, strlen(text));
+    message_append(&b, line->number ? s->name : "assignment",
+                   line->number ? (left < TEXT ? left : TEXT)
+                                : strlen("assignment"));
+    message_append(&b, place, strlen(place));
+    message_append(&b, text, strlen(text));
     append_line(&b, line, column, length);
     return false;
 }
 
 void nevh__scene_quote(nevh_scene *s, const char *text) {
     buffer b = {s->message, sizeof s->message, strlen(s->message)};
-    append(&b, "\n", 1);
-    append(&b, text, strlen(text));
+    message_append(&b, "\n", 1);
+    message_append(&b, text, strlen(text));
 }
 
 bool nevh__scene_fail(nevh_scene *s, int status, const nevh__piece *piece,

@@ -51,7 +51,7 @@ static double offset(const search *s, size_t j) {
 }
 
 /* The velocities at p, and how far they are off at most. */
-static double measure(search *s) {
+static double momenta_measure(search *s) {
     double most = 0;
     nevh__velocities(s->m->system, s->m->run.t_start, s->q, s->p, s->buffer,
                      s->slope);
@@ -67,11 +67,11 @@ static double measure(search *s) {
     return most;
 }
 
-static int residual(const gsl_vector *u, void *params, gsl_vector *f) {
+static int momenta_residual(const gsl_vector *u, void *params, gsl_vector *f) {
     search *s = params;
     for (size_t j = 0; j < s->rows; j++)
         s->p[s->row[j]] = gsl_vector_get(u, j) * s->unit[j];
-    if (!(measure(s) < INFINITY))
+    if (!(momenta_measure(s) < INFINITY))
         return GSL_EBADFUNC;
     for (size_t j = 0; j < s->rows; j++)
         gsl_vector_set(f, j, offset(s, j));
@@ -80,15 +80,15 @@ static int residual(const gsl_vector *u, void *params, gsl_vector *f) {
 
 /* The Jacobian at u, where the residual is f.  gsl_multiroot_fdjacobian does
    the same, but allocates on every call. */
-static int differences(const gsl_vector *u, const gsl_vector *f, search *s,
-                       gsl_matrix *jacobian) {
+static int momenta_differences(const gsl_vector *u, const gsl_vector *f,
+                               search *s, gsl_matrix *jacobian) {
     int status = GSL_SUCCESS;
     gsl_vector_memcpy(s->moved, u);
     for (size_t j = 0; !status && j < s->rows; j++) {
         double x = gsl_vector_get(u, j);
         double dx = GSL_SQRT_DBL_EPSILON * fmax(fabs(x), 1);
         gsl_vector_set(s->moved, j, x + dx);
-        status = residual(s->moved, s, s->f_moved);
+        status = momenta_residual(s->moved, s, s->f_moved);
         gsl_vector_set(s->moved, j, x);
         gsl_vector_sub(s->f_moved, f);
         gsl_vector_scale(s->f_moved, 1 / dx);
@@ -97,21 +97,23 @@ static int differences(const gsl_vector *u, const gsl_vector *f, search *s,
     return status;
 }
 
-static int slopes(const gsl_vector *u, void *params, gsl_matrix *jacobian) {
+static int momenta_slopes(const gsl_vector *u, void *params,
+                          gsl_matrix *jacobian) {
     search *s = params;
-    int status = residual(u, s, s->f);
-    return status ? status : differences(u, s->f, s, jacobian);
+    int status = momenta_residual(u, s, s->f);
+    return status ? status : momenta_differences(u, s->f, s, jacobian);
 }
 
-static int both(const gsl_vector *u, void *params, gsl_vector *f,
-                gsl_matrix *jacobian) {
-    int status = residual(u, params, f);
-    return status ? status : differences(u, f, params, jacobian);
+static int momenta_both(const gsl_vector *u, void *params, gsl_vector *f,
+                        gsl_matrix *jacobian) {
+    int status = momenta_residual(u, params, f);
+    return status ? status : momenta_differences(u, f, params, jacobian);
 }
 
 /* From the momenta that there are. */
-static void iterate(search *s) {
-    gsl_multiroot_function_fdf f = {residual, slopes, both, s->rows, s};
+static void momenta_iterate(search *s) {
+    gsl_multiroot_function_fdf f = {momenta_residual, momenta_slopes,
+                                    momenta_both, s->rows, s};
     for (size_t j = 0; j < s->rows; j++)
         gsl_vector_set(s->u, j, s->p[s->row[j]] / s->unit[j]);
     int status = gsl_multiroot_fdfsolver_set(s->gsl, &f, s->u);
@@ -134,11 +136,12 @@ static double factor_of(double wanted, double has) {
 
 /* Each momentum times the velocity wanted over the one that it has, both
    counted from rest. */
-static void rescale(search *s) {
+static void momenta_rescale(search *s) {
     bool moves = true;
     for (size_t j = 0; j < s->rows; j++)
         s->p[s->row[j]] = 1;
-    for (int i = 0; moves && i < RESCALINGS && measure(s) > DBL_EPSILON; i++) {
+    for (int i = 0; moves && i < RESCALINGS && momenta_measure(s) > DBL_EPSILON;
+         i++) {
         moves = false;
         for (size_t j = 0; j < s->rows; j++) {
             size_t k = s->row[j];
@@ -161,7 +164,7 @@ static void choose_units(search *s) {
         double *p = &s->p[s->row[j]], factor = 0;
         *p = 1;
         for (int i = 0; i < RESCALINGS && !(factor > 0.5 && factor < 2); i++) {
-            measure(s);
+            momenta_measure(s);
             factor = factor_of(s->scale[j] / 4,
                                fabs(s->slope[s->row[j]] - s->rest[s->row[j]]));
             *p *= factor;
@@ -175,12 +178,13 @@ static void choose_units(search *s) {
 /* The deviation of a row's velocity at the momentum p. */
 static double offset_at(search *s, size_t j, double p) {
     s->p[s->row[j]] = p;
-    measure(s);
+    momenta_measure(s);
     return offset(s, j);
 }
 
 /* Between a and b, where offsets have unlike signs, below is that at a. */
-static void halve(search *s, size_t j, double a, double b, double below) {
+static void momenta_halve(search *s, size_t j, double a, double b,
+                          double below) {
     for (double middle = (a + b) / 2; middle != a && middle != b;
          middle = (a + b) / 2) {
         double off = offset_at(s, j, middle);
@@ -204,7 +208,7 @@ static void seek(search *s, size_t j) {
             double p = side ? from - step : from + step;
             double off = offset_at(s, j, p);
             if (isfinite(off) && (off < 0) != (here < 0)) {
-                halve(s, j, before[side], p, here);
+                momenta_halve(s, j, before[side], p, here);
                 return;
             }
             before[side] = isfinite(off) ? p : before[side];
@@ -219,7 +223,7 @@ static void seek_in_turn(search *s) {
     for (size_t i = 0; i * s->rows < MOST_IN_TURN && s->residual > CLOSE; i++)
         for (size_t j = 0; j < s->rows; j++)
             seek(s, j);
-    measure(s);
+    momenta_measure(s);
 }
 
 /* Velocities that are zero are compared with the largest. */
@@ -263,7 +267,7 @@ static bool take_memory(search *s) {
            s->best && s->last && s->from;
 }
 
-static void done(search *s) {
+static void momenta_done(search *s) {
     free(s->buffer);
     if (s->gsl)
         gsl_multiroot_fdfsolver_free(s->gsl);
@@ -287,7 +291,7 @@ static void choose_rows(search *s) {
             s->row[s->rows++] = k;
     choose_scales(s);
     s->residual = INFINITY;
-    measure(s); /* the momenta sought are zero here */
+    momenta_measure(s); /* the momenta sought are zero here */
     for (size_t k = 0; k < s->m->n; k++)
         s->rest[k] = isfinite(s->slope[k]) ? s->slope[k] : 0;
 }
@@ -298,9 +302,9 @@ static void set_momenta(search *s, const double p[], double factor) {
 }
 
 /* Towards the velocities given, from those that there are. */
-static void follow(search *s) {
+static void momenta_follow(search *s) {
     double done = 0, step = 0.5;
-    measure(s);
+    momenta_measure(s);
     for (size_t j = 0; j < s->rows; j++) {
         double p = s->best[j] = s->p[s->row[j]];
         s->unit[j] = p != 0 ? fabs(p) : s->unit[j];
@@ -310,7 +314,7 @@ static void follow(search *s) {
         s->part = fmin(1, done + step);
         s->residual = INFINITY;
         memcpy(s->last, s->best, s->rows * sizeof *s->last);
-        iterate(s);
+        momenta_iterate(s);
         if (s->residual <= CLOSE) {
             done = s->part;
             step *= 2;
@@ -321,7 +325,7 @@ static void follow(search *s) {
         set_momenta(s, s->best, 1);
     }
     s->part = 1;
-    s->residual = measure(s);
+    s->residual = momenta_measure(s);
 }
 
 static int solve_coupled(search *s) {
@@ -329,14 +333,14 @@ static int solve_coupled(search *s) {
         return NEVH_ENOMEM;
     choose_units(s);
     set_momenta(s, NULL, 0);
-    iterate(s);
+    momenta_iterate(s);
     if (s->residual > CLOSE) {
         set_momenta(s, s->best, 1);
-        iterate(s);
+        momenta_iterate(s);
     }
     if (s->residual > CLOSE) {
         seek_in_turn(s);
-        follow(s);
+        momenta_follow(s);
     }
     return NEVH_OK;
 }
@@ -351,7 +355,7 @@ static bool is_limit(search *s) {
     for (int power = 10; power <= 30; power += 10) {
         double factor = fmin(ldexp(1, power), fmax(1, 0x1p500 / most));
         set_momenta(s, s->best, factor);
-        measure(s);
+        momenta_measure(s);
         for (size_t j = 0; j < s->rows; j++) {
             size_t k = s->row[j];
             double little = 4 * DBL_EPSILON * s->scale[j];
@@ -366,7 +370,7 @@ static size_t farthest_off(search *s) {
     size_t most = 0;
     for (int power = 40; power >= 0; power -= 10) {
         set_momenta(s, s->best, ldexp(1, power)); /* closer to a limit */
-        measure(s);
+        momenta_measure(s);
     }
     for (size_t j = 1; j < s->rows; j++)
         if (fabs(offset(s, j)) > fabs(offset(s, most)))
@@ -377,7 +381,7 @@ static size_t farthest_off(search *s) {
 static const char none_found[] =
     "no momenta were found that give the initial velocities";
 
-static int refuse(search *s, nevh__report *report) {
+static int momenta_refuse(search *s, nevh__report *report) {
     const nevh__scene_model *m = s->m;
     if (!(s->residual < INFINITY)) {
         static const double one = 1;
@@ -397,17 +401,17 @@ static int refuse(search *s, nevh__report *report) {
                       name, m->v[k], s->slope[k]);
 }
 
-static int solve(search *s, nevh__report *report) {
+static int momenta_solve(search *s, nevh__report *report) {
     int status = NEVH_OK;
     choose_rows(s);
-    rescale(s);
+    momenta_rescale(s);
     if (s->residual > DBL_EPSILON && s->residual < INFINITY &&
         s->rows <= MOST_ROWS)
         status = solve_coupled(s);
     if (status)
         return nevh__fail(report, status, "out of memory");
     if (s->residual > CLOSE)
-        return refuse(s, report);
+        return momenta_refuse(s, report);
     if (is_limit(s))
         return nevh__fail(report, NEVH_EMAXITER,
                           "%s: they are a limit, to which larger and larger "
@@ -420,7 +424,8 @@ static int solve(search *s, nevh__report *report) {
 int nevh__momenta_find(const nevh__scene_model *m, double q[], double p[],
                        nevh__report *report) {
     search s = {.m = m, .q = q, .p = p, .part = 1};
-    int status = take_memory(&s) ? solve(&s, report) : nevh__no_memory(report);
-    done(&s);
+    int status =
+        take_memory(&s) ? momenta_solve(&s, report) : nevh__no_memory(report);
+    momenta_done(&s);
     return status;
 }

@@ -94,29 +94,29 @@ static nevh_scene *new_scene(const char *name) {
     return NULL;
 }
 
-static void begin(nevh_scene *s, const nevh_scene_options *options,
-                  const char *text, size_t bytes) {
+static void scene_begin(nevh_scene *s, const nevh_scene_options *options,
+                        const char *text, size_t bytes) {
     s->allow_code = options->allow_code;
     if (nevh__scene_cut(s, text, bytes) && nevh__scene_effects(s) &&
         nevh__scene_switch(s, options))
         s->model = new_model(s, false);
 }
 
-static void refuse(nevh_scene *s, int status, const char *why) {
+static void scene_refuse(nevh_scene *s, int status, const char *why) {
     s->status = status;
     snprintf(s->message, sizeof s->message, "%.1000s: error: %s", s->name, why);
 }
 
 static void unreadable(nevh_scene *s, const char *why) {
-    refuse(s, NEVH_EFAILED, why);
+    scene_refuse(s, NEVH_EFAILED, why);
 }
 
 nevh_scene *nevh_scene_parse(const char *name, const char *text) {
     nevh_scene *s = new_scene(name);
     if (s && text)
-        begin(s, &(nevh_scene_options){0}, text, strlen(text));
+        scene_begin(s, &(nevh_scene_options){0}, text, strlen(text));
     else if (s)
-        refuse(s, NEVH_EINVAL, "the text is NULL");
+        scene_refuse(s, NEVH_EINVAL, "the text is NULL");
     return s;
 }
 
@@ -189,14 +189,15 @@ nevh_scene *nevh_scene_read_with(const char *path,
                               ? "nothing was written to this pipe for 10 s"
                               : strerror(errno));
         else if (s)
-            refuse(s, NEVH_EINVAL, "the path is NULL");
+            scene_refuse(s, NEVH_EINVAL, "the path is NULL");
         return s;
     }
     size_t bytes;
     char *text = read_all(s, file, &bytes);
     fclose(file);
     if (text)
-        begin(s, options ? options : &(nevh_scene_options){0}, text, bytes);
+        scene_begin(s, options ? options : &(nevh_scene_options){0}, text,
+                    bytes);
     free(text);
     return s;
 }

@@ -345,7 +345,7 @@ static bool add_from_scene(nevh_scene *s, nevh__scene_model *m,
     return add_varied(s, m, one, false);
 }
 
-static bool begin(nevh_scene *s, nevh__scene_model *m) {
+static bool scene_ensemble_begin(nevh_scene *s, nevh__scene_model *m) {
     nevh__scene_ensemble *e = nevh__pool_take(&m->pool, 1, sizeof *e);
     if (!e)
         return nevh__scene_no_memory(s);
@@ -359,7 +359,8 @@ static bool begin(nevh_scene *s, nevh__scene_model *m) {
 bool nevh__model_ensemble(nevh_scene *s, nevh__scene_model *m) {
     if (s->overrides)
         return true;
-    if (!begin(s, m) || !nevh__scene_each(s, m, NEVH__ENSEMBLE, add_from_scene))
+    if (!scene_ensemble_begin(s, m) ||
+        !nevh__scene_each(s, m, NEVH__ENSEMBLE, add_from_scene))
         return false;
     for (size_t i = 0; i < s->n_varies; i++)
         if (!add_varied(s, m, s->varies[i], true))

@@ -42,7 +42,7 @@ enum { ORDER = 2, ROUNDS = 6, MOST_ROWS = 500 };
 static const double solved = 1e-32, enough = 1e-30;
 
 /* The deviation of the velocities, over the largest of them. */
-static double measure(search *s) {
+static double scene_exact_measure(search *s) {
     size_t n = s->m->n;
     double most = 0, size = 0;
     if (!nevh__series_expand_quad(s->series, s->m->exact->t_start, s->state,
@@ -58,9 +58,9 @@ static double measure(search *s) {
 }
 
 /* Each momentum by its own velocity, which is in proportion to it. */
-static double rescale(search *s) {
+static double scene_exact_rescale(search *s) {
     size_t n = s->m->n;
-    double off = measure(s);
+    double off = scene_exact_measure(s);
     for (int i = 0; i < ROUNDS && off > solved; i++) {
         for (size_t j = 0; j < s->count; j++) {
             size_t k = s->row[j];
@@ -68,7 +68,7 @@ static double rescale(search *s) {
             if (has != 0)
                 s->state[n + k] += s->off[j] * (s->state[n + k] / has);
         }
-        double now = measure(s);
+        double now = scene_exact_measure(s);
         if (!(now < off))
             return now;
         off = now;
@@ -77,7 +77,8 @@ static double rescale(search *s) {
 }
 
 /* The derivatives of velocities by momenta. */
-static void find_slopes(search *s, gsl_matrix *slope, nevh__wide before[]) {
+static void scene_exact_find_slopes(search *s, gsl_matrix *slope,
+                                    nevh__wide before[]) {
     size_t n = s->m->n;
     for (size_t i = 0; i < s->count; i++)
         before[i] = s->rows[2 * n + s->row[i]];
@@ -85,21 +86,21 @@ static void find_slopes(search *s, gsl_matrix *slope, nevh__wide before[]) {
         nevh__wide *p = &s->state[n + s->row[j]], kept = *p;
         nevh__wide step = kept != 0 ? fabsq(kept) * 0x1p-56 : 0x1p-56;
         *p += step;
-        measure(s);
+        scene_exact_measure(s);
         for (size_t i = 0; i < s->count; i++)
             gsl_matrix_set(
                 slope, i, j,
                 (double)((s->rows[2 * n + s->row[i]] - before[i]) / step));
         *p = kept;
     }
-    measure(s);
+    scene_exact_measure(s);
 }
 
 /* Newton's iteration with one matrix. */
-static double iterate(search *s, gsl_matrix *slope, gsl_permutation *swaps,
-                      gsl_vector *x) {
+static double scene_exact_iterate(search *s, gsl_matrix *slope,
+                                  gsl_permutation *swaps, gsl_vector *x) {
     int sign;
-    double off = measure(s);
+    double off = scene_exact_measure(s);
     gsl_linalg_LU_decomp(slope, swaps, &sign);
     for (size_t i = 0; i < s->count; i++)
         if (gsl_matrix_get(slope, i, i) == 0)
@@ -110,7 +111,7 @@ static double iterate(search *s, gsl_matrix *slope, gsl_permutation *swaps,
         gsl_linalg_LU_svx(slope, swaps, x);
         for (size_t j = 0; j < s->count; j++)
             s->state[s->m->n + s->row[j]] += gsl_vector_get(x, j);
-        off = measure(s);
+        off = scene_exact_measure(s);
     }
     return off;
 }
@@ -125,8 +126,8 @@ static int solve_together(search *s, double *off) {
         gsl_matrix *slope = gsl_matrix_alloc(n, n);
         gsl_permutation *swaps = gsl_permutation_alloc(n);
         gsl_vector *x = gsl_vector_alloc(n);
-        find_slopes(s, slope, before);
-        *off = iterate(s, slope, swaps, x);
+        scene_exact_find_slopes(s, slope, before);
+        *off = scene_exact_iterate(s, slope, swaps, x);
         gsl_matrix_free(slope);
         gsl_permutation_free(swaps);
         gsl_vector_free(x);
@@ -135,8 +136,8 @@ static int solve_together(search *s, double *off) {
     return trial && before ? NEVH_OK : NEVH_ENOMEM;
 }
 
-static int solve(nevh_scene *scene, search *s) {
-    double off = rescale(s);
+static int scene_exact_solve(nevh_scene *scene, search *s) {
+    double off = scene_exact_rescale(s);
     if (off > solved && s->count <= MOST_ROWS && solve_together(s, &off))
         return nevh__scene_no_memory(scene), NEVH_ENOMEM;
     if (off <= enough)
@@ -168,7 +169,7 @@ static int find_momenta(nevh_scene *scene, const nevh__scene_model *m,
         for (size_t k = 0; k < n; k++)
             if (m->by_velocity[k])
                 s.row[s.count++] = k;
-        status = solve(scene, &s);
+        status = scene_exact_solve(scene, &s);
         memcpy(p, s.state + n, n * sizeof *p);
     } else {
         nevh__scene_no_memory(scene);

@@ -28,7 +28,7 @@ nevh__formula *nevh__formula_list(nevh_scene *s, nevh__scene_model *m,
 }
 
 /* The model frees the tape. */
-static bool keep(nevh_scene *s, nevh__tape *tape) {
+static bool scene_formula_keep(nevh_scene *s, nevh__tape *tape) {
     nevh__owned *owned = &s->model->owned_shown;
     nevh__tape **tapes =
         nevh__grow(owned->tapes, owned->count + 1, sizeof *tapes);
@@ -50,13 +50,13 @@ static bool make_tape(nevh_scene *s, nevh__formula *formula) {
     nevh__tree_free(tree);
     if (!tape)
         return nevh__scene_fail_formula(s, &formula->piece, &error);
-    if (!keep(s, tape))
+    if (!scene_formula_keep(s, tape))
         return false;
     formula->tape = tape;
     return true;
 }
 
-static bool reserve(nevh_scene *s) {
+static bool scene_formula_reserve(nevh_scene *s) {
     nevh__scene_model *m = s->model;
     if (!m->velocities)
         m->velocities = nevh__array(m->n, sizeof *m->velocities);
@@ -71,7 +71,7 @@ bool nevh__formula_value(nevh_scene *s, nevh__formula *formula, nevh__state *at,
     if (!formula->tape && !make_tape(s, formula))
         return false;
     if (!at->moving && nevh__tape_count(formula->tape, NEVH__C)) {
-        if (!reserve(s))
+        if (!scene_formula_reserve(s))
             return false;
         nevh__velocities(m->system, at->t, at->q, at->p, m->velocity_buffer,
                          m->velocities);

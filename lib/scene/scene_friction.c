@@ -59,8 +59,8 @@ static bool take_rates(nevh_scene *s, nevh__scene_model *m, friction *d) {
     return fine;
 }
 
-static bool take_part(nevh_scene *s, nevh__scene_model *m, friction *d,
-                      const nevh__piece *part) {
+static bool scene_friction_take_part(nevh_scene *s, nevh__scene_model *m,
+                                     friction *d, const nevh__piece *part) {
     char stop;
     nevh__formula_error error;
     d->one = (nevh__statement){.value = *part};
@@ -77,8 +77,8 @@ static bool take_part(nevh_scene *s, nevh__scene_model *m, friction *d,
     return fine;
 }
 
-static bool add_friction(nevh_scene *s, nevh__scene_model *m,
-                         const nevh__statement *statement) {
+static bool scene_friction_add_friction(nevh_scene *s, nevh__scene_model *m,
+                                        const nevh__statement *statement) {
     size_t count;
     friction d = {.rates = nevh__pool_take(&m->pool, m->n, sizeof *d.rates),
                   .given = nevh__pool_take(&m->pool, m->n, sizeof *d.given)};
@@ -90,7 +90,7 @@ static bool add_friction(nevh_scene *s, nevh__scene_model *m,
     if (!parts)
         return false;
     for (size_t i = 0; i < count; i++)
-        if (!take_part(s, m, &d, &parts[i]))
+        if (!scene_friction_take_part(s, m, &d, &parts[i]))
             return false;
     return !nevh_system_add_friction(m->system, statement->head.name,
                                      d.rates) ||
@@ -98,5 +98,5 @@ static bool add_friction(nevh_scene *s, nevh__scene_model *m,
 }
 
 bool nevh__model_friction(nevh_scene *s, nevh__scene_model *m) {
-    return nevh__scene_each(s, m, NEVH__FRICTION, add_friction);
+    return nevh__scene_each(s, m, NEVH__FRICTION, scene_friction_add_friction);
 }

@@ -57,8 +57,8 @@ static bool take_number(nevh_scene *s, const nevh__scene_model *m,
     return true;
 }
 
-static bool take_numbers(nevh_scene *s, nevh__scene_model *m,
-                         const nevh__piece *value, list *to) {
+static bool scene_integrators_take_numbers(nevh_scene *s, nevh__scene_model *m,
+                                           const nevh__piece *value, list *to) {
     to->parts = nevh__piece_list(s, &m->pool, value, &to->count);
     if (!to->parts)
         return false;
@@ -101,7 +101,7 @@ static bool take_row(nevh_scene *s, nevh__scene_model *m, const list *all,
                      size_t i, list *row) {
     const nevh__piece *part = &all->parts[i];
     return (!part->text[0] && i == 0 && all->n_parts > 1) ||
-           take_numbers(s, m, part, row);
+           scene_integrators_take_numbers(s, m, part, row);
 }
 
 static bool fill_rows(nevh_scene *s, const list rows[], list *to) {
@@ -165,10 +165,11 @@ static bool take_composition(nevh_scene *s, nevh__scene_model *m, section *x) {
     x->table.base = scheme_before(s, m, x->title, x->base.text);
     if (!x->table.base)
         return nevh__scene_fail_integrator(s, &x->base, x->base.text);
-    return take_numbers(s, m, &rest, to);
+    return scene_integrators_take_numbers(s, m, &rest, to);
 }
 
-static bool take_first(nevh_scene *s, section *x, const nevh__piece *value) {
+static bool scene_integrators_take_first(nevh_scene *s, section *x,
+                                         const nevh__piece *value) {
     static const char *const words[] = {"kick", "drift"};
     for (size_t i = 0; i < 2; i++)
         if (strcmp(value->text, words[i]) == 0) {
@@ -187,11 +188,12 @@ static bool take_line(nevh_scene *s, nevh__scene_model *m, section *x,
     if (k >= KEYS)
         return false;
     if (k == FIRST)
-        return take_first(s, x, &line->value);
+        return scene_integrators_take_first(s, x, &line->value);
     x->lists[k].from = line;
     return k == A      ? take_matrix(s, m, x)
            : k == STEP ? take_composition(s, m, x)
-                       : take_numbers(s, m, &line->value, &x->lists[k]);
+                       : scene_integrators_take_numbers(s, m, &line->value,
+                                                        &x->lists[k]);
 }
 
 /* As many as a has rows. */
@@ -233,8 +235,8 @@ static void fill_table(section *x) {
 }
 
 /* The text at fault. */
-static const nevh__piece *place_of(const section *x,
-                                   const nevh_table_error *error) {
+static const nevh__piece *
+scene_integrators_place_of(const section *x, const nevh_table_error *error) {
     const char *letter = error->list ? strchr(letters, error->list) : NULL;
     const list *one = letter ? &x->lists[letter - letters] : NULL;
     if (one == &x->lists[C] && !one->from)
@@ -275,7 +277,8 @@ static struct nevh__scheme *note(nevh_scene *s, const section *x) {
     return to;
 }
 
-static const nevh_integrator *make(nevh_scene *s, const section *x) {
+static const nevh_integrator *scene_integrators_make(nevh_scene *s,
+                                                     const section *x) {
     nevh_table_error error = {0};
     for (const struct nevh__scheme *i = s->schemes; i; i = i->next)
         if (is_made_of(i, x))
@@ -286,8 +289,8 @@ static const nevh_integrator *make(nevh_scene *s, const section *x) {
     if (!made || error.status == NEVH_ENOMEM)
         nevh__scene_no_memory(s);
     else if (!scheme)
-        nevh__scene_fail(s, error.status, place_of(x, &error), "%s",
-                         error.text);
+        nevh__scene_fail(s, error.status, scene_integrators_place_of(x, &error),
+                         "%s", error.text);
     if (!scheme)
         return NULL;
     made->scheme = scheme;
@@ -333,7 +336,7 @@ static bool take_section(nevh_scene *s, nevh__scene_model *m, size_t i) {
     if (!check_lists(s, &x))
         return false;
     fill_table(&x);
-    m->schemes[i] = make(s, &x);
+    m->schemes[i] = scene_integrators_make(s, &x);
     return m->schemes[i] &&
            check_same(s, &x, s->model ? s->model->schemes[i] : NULL,
                       m->schemes[i]);

@@ -16,9 +16,9 @@ static bool take_number(nevh_scene *s, const nevh__scene_model *m,
 }
 
 /* A list of numbers greater than 0. */
-static bool take_numbers(nevh_scene *s, nevh__scene_model *m,
-                         const nevh__piece *value, const double **numbers,
-                         size_t *count) {
+static bool scene_run_take_numbers(nevh_scene *s, nevh__scene_model *m,
+                                   const nevh__piece *value,
+                                   const double **numbers, size_t *count) {
     nevh__piece *list = nevh__piece_list(s, &m->pool, value, count);
     if (!list)
         return false;
@@ -110,12 +110,13 @@ static bool take_t_end(nevh_scene *s, nevh__scene_model *m,
 }
 
 static bool take_dt(nevh_scene *s, nevh__scene_model *m, const nevh__piece *v) {
-    return take_numbers(s, m, v, &m->run.dt, &m->run.dts);
+    return scene_run_take_numbers(s, m, v, &m->run.dt, &m->run.dts);
 }
 
 static bool take_tolerance(nevh_scene *s, nevh__scene_model *m,
                            const nevh__piece *v) {
-    return take_numbers(s, m, v, &m->run.tolerance, &m->run.tolerances);
+    return scene_run_take_numbers(s, m, v, &m->run.tolerance,
+                                  &m->run.tolerances);
 }
 
 static bool take_integrators(nevh_scene *s, nevh__scene_model *m,

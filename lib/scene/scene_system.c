@@ -61,8 +61,8 @@ static bool switch_on(nevh_scene *s, const nevh__piece *name) {
 }
 
 /* effects = NAME, NAME | all | none */
-static bool choose(nevh_scene *s, nevh__scene_model *m,
-                   const nevh__statement *statement) {
+static bool scene_system_choose(nevh_scene *s, nevh__scene_model *m,
+                                const nevh__statement *statement) {
     (void)m;
     size_t count;
     if (strcmp(statement->head.name, "effects") != 0 ||
@@ -87,7 +87,7 @@ bool nevh__scene_effects(nevh_scene *s) {
     if (!nevh__scene_each(s, NULL, NEVH__EFFECTS, add_switch))
         return false;
     return nevh__scene_each(s, NULL, NEVH__FRICTION, add_switch) &&
-           nevh__scene_each(s, NULL, NEVH__SCENE, choose);
+           nevh__scene_each(s, NULL, NEVH__SCENE, scene_system_choose);
 }
 
 bool nevh__scene_switch(nevh_scene *s, const nevh_scene_options *o) {

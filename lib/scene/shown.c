@@ -89,7 +89,7 @@ static bool add_invariant(nevh_scene *s, nevh__scene_model *m,
 }
 
 /* Room for one drawn shape more; NULL when memory is out. */
-static nevh__drawn *add_part(nevh_scene *s, nevh__scene_model *m) {
+static nevh__drawn *shown_add_part(nevh_scene *s, nevh__scene_model *m) {
     if (!m->drawn)
         m->drawn = nevh__pool_take(&m->pool, s->n_statements, sizeof *m->drawn);
     if (!m->drawn)
@@ -144,7 +144,7 @@ static bool add_drawn(nevh_scene *s, nevh__scene_model *m,
     for (size_t i = 0; i < 2; i++) {
         if (strcmp(known[i], name) != 0)
             continue;
-        nevh__drawn *part = add_part(s, m);
+        nevh__drawn *part = shown_add_part(s, m);
         if (!part || !take_values(s, m, &statement->value, part))
             return false;
         part->decl.kind = name;

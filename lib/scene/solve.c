@@ -19,7 +19,7 @@ typedef struct {
     double t, *q, *p, *x; /* x: in q or p */
 } equation;
 
-static double difference(const equation *e, double at) {
+static double solve_difference(const equation *e, double at) {
     enum { LANES = NEVH__LANES };
     double t[LANES], h[LANES], energy = 0;
     size_t n = e->variant->model->n;
@@ -41,15 +41,15 @@ static double difference(const equation *e, double at) {
 
 /* Between a and b, where the differences have other signs: by the rule of false
    position with halves (Illinois), which always encloses. */
-static double enclose(const equation *e, double a, double at_a, double b,
-                      double at_b) {
+static double solve_enclose(const equation *e, double a, double at_a, double b,
+                            double at_b) {
     for (int i = 0; i < MOST_TRIALS && at_b != 0; i++) {
         double x = b - at_b * (b - a) / (at_b - at_a);
         if (!(x > fmin(a, b) && x < fmax(a, b)) || i % 8 == 7)
             x = a + (b - a) / 2;
         if (x == a || x == b)
             break;
-        double y = difference(e, x);
+        double y = solve_difference(e, x);
         if (isnan(y))
             return NAN;
         if ((y > 0) != (at_b > 0)) {
@@ -71,18 +71,18 @@ bool nevh__variant_solve(const nevh_sweep *s, const nevh__variant *x, size_t i,
     equation e = {x, &x->sides[i], v->energy, x->model->run.t_start, q, p, to};
     double begin = v->a, step = first_step * fmax(fabs(begin), 1);
     double at[2] = {begin, begin}, value[2];
-    value[0] = value[1] = difference(&e, begin);
+    value[0] = value[1] = solve_difference(&e, begin);
     if (value[0] == 0)
         return true;
     for (int k = 0; k < MOST_STEPS; k++, step *= growth)
         for (int side = 0; side < 2; side++) {
             double to_there = begin + (side ? -step : step);
-            double there = difference(&e, to_there);
+            double there = solve_difference(&e, to_there);
             if (!isnan(there) && !isnan(value[side]) &&
                 (there > 0) != (value[side] > 0)) {
                 double found =
-                    enclose(&e, at[side], value[side], to_there, there);
-                double left = difference(&e, found);
+                    solve_enclose(&e, at[side], value[side], to_there, there);
+                double left = solve_difference(&e, found);
                 return isfinite(left) &&
                        fabs(left) <= fabs(there - value[side]);
             }

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void fail(nevh_scene *scene, const nevh__report *report) {
+static void start_fail(nevh_scene *scene, const nevh__report *report) {
     const nevh__scene_model *m = scene->model;
     size_t k = 0;
     while (!m->by_velocity[k])
@@ -19,7 +19,7 @@ static void fail(nevh_scene *scene, const nevh__report *report) {
 static int find_momenta(nevh_scene *scene, double q[], double p[]) {
     nevh__report report = {0};
     if (nevh__momenta_find(scene->model, q, p, &report))
-        fail(scene, &report);
+        start_fail(scene, &report);
     return report.status;
 }
 

@@ -7,7 +7,7 @@
 
 enum { ANYTHING = NEVH__READS_TIME | NEVH__READS_STATE | NEVH__READS_V };
 
-static bool fail(nevh__report *report, int status, const char *text) {
+static bool variant_fail(nevh__report *report, int status, const char *text) {
     nevh__fail(report, status, "%s", text);
     return false;
 }
@@ -30,7 +30,7 @@ static bool make_quantity(nevh__variant *x, const char *left, const char *right,
         if (text && error.status && error.status != NEVH_ENOMEM)
             nevh__fail(report, error.status, "%s: %s", text, error.text);
         else
-            fail(report, NEVH_ENOMEM, "out of memory");
+            variant_fail(report, NEVH_ENOMEM, "out of memory");
         free(text);
         return false;
     }
@@ -83,7 +83,7 @@ static bool make_stop(nevh__variant *x, nevh__report *report) {
         value && make_quantity(x, stop->below ? value : formula,
                                stop->below ? formula : value, &x->stop, report);
     if (!value)
-        fail(report, NEVH_ENOMEM, "out of memory");
+        variant_fail(report, NEVH_ENOMEM, "out of memory");
     free(value);
     return made;
 }
@@ -97,7 +97,7 @@ static bool make_sides(const nevh_sweep *s, nevh__variant *x,
     x->padded = nevh__array(2 * x->model->n * NEVH__LANES, sizeof(double));
     x->energy = nevh_field_new(x->model->system, &values);
     if (!x->sides || !x->padded || !x->energy)
-        return fail(report, NEVH_ENOMEM, "out of memory");
+        return variant_fail(report, NEVH_ENOMEM, "out of memory");
     for (size_t i = 0; i < e->n_varied; i++) {
         const nevh__varied *v = &e->varied[i];
         if (v->how == NEVH__VARY_SOLVE &&
@@ -134,7 +134,7 @@ bool nevh__variant_make(nevh_sweep *s, const double varied[], nevh__variant *x,
     x->outcomes = nevh__array(s->n_outcomes, sizeof *x->outcomes);
     x->room = nevh__velocity_buffer(x->model->system);
     if (!x->outcomes || !x->room)
-        return fail(report, NEVH_ENOMEM, "out of memory");
+        return variant_fail(report, NEVH_ENOMEM, "out of memory");
     for (size_t i = 0; i < s->n_outcomes; i++)
         if (!make_outcome(x, &s->outcomes[i], &x->outcomes[i], report))
             return false;
@@ -213,8 +213,9 @@ nevh_ensemble_options nevh__variant_options(const nevh_sweep *s,
 }
 
 /* Finds what is solved for, one after the other. */
-static int solve(const nevh_sweep *s, const nevh__variant *x, double varied[],
-                 double q[], double p[], nevh__report *report) {
+static int variant_solve(const nevh_sweep *s, const nevh__variant *x,
+                         double varied[], double q[], double p[],
+                         nevh__report *report) {
     const nevh__scene_ensemble *e = s->ensemble;
     for (size_t i = 0; i < e->n_varied; i++) {
         const nevh__varied *is = &e->varied[i];
@@ -260,7 +261,7 @@ int nevh__variant_start(const nevh_sweep *s, const nevh__variant *x,
     m.by_velocity = e->by_velocity;
     int status = any ? nevh__momenta_find(&m, q, p, report) : NEVH_OK;
     if (!status)
-        status = solve(s, x, varied, q, p, report);
+        status = variant_solve(s, x, varied, q, p, report);
     if (status)
         return status;
     const char *effect =

@@ -76,9 +76,10 @@ static bool same_outcomes(const nevh_sweep *s, const nevh__variant *a,
     return true;
 }
 
-static bool
-compare(const nevh_sweep *s, const nevh__variant *a, const nevh__variant *b,
-        bool (*same)(const nevh__term_entry *, const nevh__term_entry *)) {
+static bool variant_alike_compare(const nevh_sweep *s, const nevh__variant *a,
+                                  const nevh__variant *b,
+                                  bool (*same)(const nevh__term_entry *,
+                                               const nevh__term_entry *)) {
     const nevh__scene_model *x = a->model, *y = b->model;
     return !s->is.transformed && compare_systems(x->system, y->system, same) &&
            same_run(&x->run, &y->run, x->n) && same_outcomes(s, a, b);
@@ -86,11 +87,11 @@ compare(const nevh_sweep *s, const nevh__variant *a, const nevh__variant *b,
 
 bool nevh__variants_alike(const nevh_sweep *s, const nevh__variant *a,
                           const nevh__variant *b) {
-    return compare(s, a, b, same_terms);
+    return variant_alike_compare(s, a, b, same_terms);
 }
 
 bool nevh__variants_differ_in_numbers(const nevh_sweep *s,
                                       const nevh__variant *a,
                                       const nevh__variant *b) {
-    return compare(s, a, b, alike_terms);
+    return variant_alike_compare(s, a, b, alike_terms);
 }

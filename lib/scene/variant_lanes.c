@@ -54,8 +54,8 @@ void nevh__lane_form_see(const nevh_sweep *s, nevh__lane_form *f,
 }
 
 /* The constants of a term: of each instance its own, then numbers. */
-static void fill(const nevh__lane_form *f, const nevh__variant *x,
-                 size_t term) {
+static void variant_lanes_fill(const nevh__lane_form *f, const nevh__variant *x,
+                               size_t term) {
     const nevh_term *decl = &x->model->system->terms[term]->decl;
     size_t count = count_numbers(f, term);
     const double *numbers;
@@ -71,7 +71,7 @@ static void fill(const nevh__lane_form *f, const nevh__variant *x,
 }
 
 /* The base's term with constants in place of numbers. */
-static bool add_term(nevh__lane_form *f, size_t term) {
+static bool variant_lanes_add_term(nevh__lane_form *f, size_t term) {
     const nevh_system *base = f->base.model->system;
     nevh_term decl = base->terms[term]->decl;
     nevh__tape *tape = nevh__tape_open(decl.params, f->opened[term]);
@@ -88,7 +88,7 @@ static bool add_term(nevh__lane_form *f, size_t term) {
     f->constants[term] = nevh__array(decl.count * nc, sizeof(double));
     if (!f->constants[term])
         return false;
-    fill(f, &f->base, term);
+    variant_lanes_fill(f, &f->base, term);
     nevh__tape_shape(&decl, tape);
     decl.c = f->constants[term];
     return !nevh_system_add(f->system, &decl);
@@ -110,7 +110,7 @@ bool nevh__lane_form_finish(nevh__lane_form *f) {
     size_t on = 0;
     f->system = nevh_system_new(base->n);
     for (size_t i = 0; f->system && i < base->n_terms; i++) {
-        if (!add_term(f, i))
+        if (!variant_lanes_add_term(f, i))
             return false;
         if (nevh__term_on(base, base->terms[i]))
             f->of_field[on++] = f->constants[i];
@@ -150,6 +150,6 @@ bool nevh__lane_form_fits(const nevh_sweep *s, nevh__lane_form *f,
             if (!f->opened[term][i] && !same_number(f, x, term, i))
                 return false;
     for (size_t term = 0; term < x->model->system->n_terms; term++)
-        fill(f, x, term);
+        variant_lanes_fill(f, x, term);
     return true;
 }

@@ -26,8 +26,9 @@ double *nevh__velocity_buffer(const nevh_system *system) {
 }
 
 /* Columns of a block are instances; those beyond the last repeat it. */
-static void gather(const double from[], const size_t indices[], size_t each,
-                   size_t first, size_t count, double rows[]) {
+static void velocity_gather(const double from[], const size_t indices[],
+                            size_t each, size_t first, size_t count,
+                            double rows[]) {
     for (size_t lane = 0; lane < WIDTH; lane++) {
         size_t i = first + lane < count ? first + lane : count - 1;
         for (size_t k = 0; k < each; k++)
@@ -49,17 +50,18 @@ static block read_block(const nevh_term *decl, size_t first, double t,
     b.result = b.c + WIDTH * decl->nc;
     for (size_t lane = 0; lane < WIDTH; lane++)
         b.t[lane] = decl->time ? t : 0;
-    gather(q, decl->q, decl->nq, first, decl->count, b.q);
-    gather(p, decl->p, decl->np, first, decl->count, b.p);
-    gather(decl->c, NULL, decl->nc, first, decl->count, b.c);
+    velocity_gather(q, decl->q, decl->nq, first, decl->count, b.q);
+    velocity_gather(p, decl->p, decl->np, first, decl->count, b.p);
+    velocity_gather(decl->c, NULL, decl->nc, first, decl->count, b.c);
     return b;
 }
 
 static const double part = 0x1p-10; /* of a momentum: a step */
 
 /* d/dp[k] of order 4 of one instance; p is as before afterwards. */
-static double difference(const nevh_term *decl, double t, const double q[],
-                         double p[], const double c[], size_t k) {
+static double velocity_difference(const nevh_term *decl, double t,
+                                  const double q[], double p[],
+                                  const double c[], size_t k) {
     const double at = p[k], step = at != 0 ? part * fabs(at) : part;
     double h[4];
     for (int i = 0; i < 4; i++) {
@@ -79,13 +81,13 @@ static void add_differences(const nevh_term *decl, double t, const double q[],
     for (size_t k = 0; k < decl->np; k++)
         own_p[k] = p[decl->p[k]];
     for (size_t k = 0; k < decl->np; k++)
-        v[decl->p[k]] +=
-            difference(decl, decl->time ? t : 0, own_q, own_p, decl->c, k);
+        v[decl->p[k]] += velocity_difference(decl, decl->time ? t : 0, own_q,
+                                             own_p, decl->c, k);
 }
 
-static void add_block(const nevh_term *decl, size_t first, double t,
-                      const double q[], const double p[], double buffer[],
-                      double v[]) {
+static void velocity_add_block(const nevh_term *decl, size_t first, double t,
+                               const double q[], const double p[],
+                               double buffer[], double v[]) {
     block b = read_block(decl, first, t, q, p, buffer);
     decl->gradient(WIDTH, b.t, b.q, b.p, b.c, decl->params, NULL, b.result);
     for (size_t lane = 0; lane < WIDTH && first + lane < decl->count; lane++)
@@ -105,7 +107,7 @@ void nevh__velocities(const nevh_system *system, double t, const double q[],
             add_differences(decl, t, q, p, buffer, v);
         for (size_t first = 0; decl->gradient && first < decl->count;
              first += WIDTH)
-            add_block(decl, first, t, q, p, buffer, v);
+            velocity_add_block(decl, first, t, q, p, buffer, v);
     }
 }
 

@@ -29,7 +29,8 @@ void nevh__lane_members_free(nevh__lane_members *l) {
 }
 
 /* The next of the queue that has a start; others are told of, or left. */
-static bool next(void *data, uint64_t *member, double q[], double p[]) {
+static bool worker_lanes_next(void *data, uint64_t *member, double q[],
+                              double p[]) {
     nevh__worker *w = data;
     nevh_sweep *s = w->sweep;
     while (!s->ending && w->lanes.queue_at < w->lanes.n_queue) {
@@ -63,12 +64,12 @@ static const nevh__own *own_of(void *data, uint64_t member) {
     return &l->parts;
 }
 
-static void leave(void *data, uint64_t member) {
+static void worker_lanes_leave(void *data, uint64_t member) {
     nevh__worker *w = data;
     w->lanes.left[w->lanes.n_left++] = (size_t)member;
 }
 
-static int done(void *data, const nevh_member_result *r) {
+static int worker_lanes_done(void *data, const nevh_member_result *r) {
     nevh__worker *w = data;
     size_t i = w->order[r->member];
     nevh__worker_finish(w, w->list[i],
@@ -118,7 +119,7 @@ void nevh__lane_members_open(nevh__worker *w) {
         e = nevh_ensemble_new(w->lanes.form.system, &is);
     }
     nevh__ensemble_set_stop(e, &w->sweep->ending);
-    if (nevh__ensemble_vary(e, own_of, leave))
+    if (nevh__ensemble_vary(e, own_of, worker_lanes_leave))
         w->lanes.ensemble = e;
     else
         nevh_ensemble_free(e);
@@ -146,7 +147,7 @@ size_t nevh__lane_members_run(nevh__worker *w) {
     }
     l->n_queue = queued;
     l->n_done = 0;
-    nevh_ensemble_run(l->ensemble, next, done, w);
+    nevh_ensemble_run(l->ensemble, worker_lanes_next, worker_lanes_done, w);
     pthread_mutex_lock(&w->sweep->lock);
     w->sweep->by_lane += l->n_done;
     pthread_mutex_unlock(&w->sweep->lock);

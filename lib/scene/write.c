@@ -12,7 +12,7 @@ typedef struct {
     char *folder; /* that names of C files are put after; NULL: none */
 } writer;
 
-static void put(writer *w, const char *bytes, size_t count) {
+static void write_put(writer *w, const char *bytes, size_t count) {
     if (w->failed)
         return;
     if (w->used + count >= w->capacity) {
@@ -30,7 +30,7 @@ static void put(writer *w, const char *bytes, size_t count) {
 }
 
 static void put_text(writer *w, const char *text) {
-    put(w, text, strlen(text));
+    write_put(w, text, strlen(text));
 }
 
 /* Puts a line, with other text in place of a piece and another value. */
@@ -39,11 +39,11 @@ static void put_changed(writer *w, const nevh__statement *one, const char *key,
     const nevh__line *line = one->key.line;
     const char *after_key = one->key.at + strlen(one->key.text);
     const char *after = one->value.at + strlen(one->value.text);
-    put(w, line->text, (size_t)(one->key.at - line->text));
+    write_put(w, line->text, (size_t)(one->key.at - line->text));
     put_text(w, key);
-    put(w, after_key, (size_t)(one->value.at - after_key));
+    write_put(w, after_key, (size_t)(one->value.at - after_key));
     put_text(w, value);
-    put(w, after, (size_t)(line->text + line->bytes - after));
+    write_put(w, after, (size_t)(line->text + line->bytes - after));
 }
 
 /* A list or one value was set: NAME[i = 1..N] becomes NAME[1..N]. */
@@ -52,7 +52,7 @@ static void put_set(writer *w, const nevh__statement *one, const char *value) {
                *equals = one->head.index ? strchr(open, '=') : NULL;
     writer key = {0};
     if (equals) {
-        put(&key, one->key.text, (size_t)(open - one->key.text) + 1);
+        write_put(&key, one->key.text, (size_t)(open - one->key.text) + 1);
         put_text(&key, equals + 1 + strspn(equals + 1, " \t"));
     }
     w->failed |= key.failed;
@@ -65,7 +65,7 @@ static void put_set(writer *w, const nevh__statement *one, const char *value) {
 static void put_code(writer *w, const nevh__statement *one) {
     const char *value = one->value.text, *name = strchr(value, '"') + 1;
     writer all = {0};
-    put(&all, value, (size_t)(name - value));
+    write_put(&all, value, (size_t)(name - value));
     put_text(&all, w->folder);
     put_text(&all, "/");
     put_text(&all, name);
@@ -75,7 +75,7 @@ static void put_code(writer *w, const nevh__statement *one) {
     free(all.text);
 }
 
-static bool moves(const writer *w, const nevh__statement *one) {
+static bool write_moves(const writer *w, const nevh__statement *one) {
     const char *name = strchr(one->value.text, '"');
     return w->folder && nevh__is_code(one) && name && name[1] != '/';
 }
@@ -148,10 +148,10 @@ static void put_statement(writer *w, const nevh_scene *s,
         put_set(w, one, from->value.text);
     else if (s->switched && one == choice_of(s))
         put_choice(w, s, one);
-    else if (moves(w, one))
+    else if (write_moves(w, one))
         put_code(w, one);
     else
-        put(w, one->key.line->text, one->key.line->bytes);
+        write_put(w, one->key.line->text, one->key.line->bytes);
 }
 
 static void put_lines(writer *w, const nevh_scene *s) {
@@ -167,7 +167,7 @@ static void put_lines(writer *w, const nevh_scene *s) {
             while (next < end && next->key.line == line)
                 next++;
         } else
-            put(w, line->text, line->bytes);
+            write_put(w, line->text, line->bytes);
         put_text(w, "\n");
         if (missing && heading == line)
             put_new_choice(w, s, "", "\n");

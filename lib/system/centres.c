@@ -10,14 +10,15 @@ typedef struct {
     bool *owned; /* by a centre */
 } places;
 
-static size_t place_of(const nevh_term *decl, size_t instance, size_t i) {
+static size_t centres_place_of(const nevh_term *decl, size_t instance,
+                               size_t i) {
     return i < decl->nq ? decl->q[instance * decl->nq + i]
                         : decl->p[instance * decl->np + i - decl->nq];
 }
 
 static void add_entry(const places *x, const nevh_term *decl, size_t instance,
                       size_t i, size_t j, double value) {
-    size_t k = place_of(decl, instance, i);
+    size_t k = centres_place_of(decl, instance, i);
     if (i == j && i >= decl->nq)
         x->inverse_mass[k] += value;
     else if (value != 0)
@@ -37,7 +38,8 @@ static bool add_form(const places *x, const nevh__term_entry *term,
             double value = room[i * (nv + 1) + j];
             if (!owned)
                 add_entry(x, decl, instance, i, j, value);
-            meets |= value != 0 && x->owned[place_of(decl, instance, i)];
+            meets |=
+                value != 0 && x->owned[centres_place_of(decl, instance, i)];
         }
     return meets;
 }
@@ -56,7 +58,7 @@ static int add_forms(const places *x, const nevh__term_entry *term, bool owned,
 }
 
 /* All instances, or none. */
-static bool own(const places *x, const nevh_term *decl) {
+static bool centres_own(const places *x, const nevh_term *decl) {
     size_t count = decl->count * decl->nq, taken = 0;
     for (; taken < count; taken++) {
         size_t k = decl->q[taken], first = decl->q[taken - taken % decl->nq];
@@ -71,8 +73,8 @@ static bool own(const places *x, const nevh_term *decl) {
 }
 
 /* Forms that A must have, centres, and the other forms. */
-static int choose(const nevh_system *s, const places *x,
-                  nevh__part_role part[]) {
+static int centres_choose(const nevh_system *s, const places *x,
+                          nevh__part_role part[]) {
     int status = NEVH_OK;
     bool meets;
     for (int pass = 0; pass < 3; pass++)
@@ -80,7 +82,8 @@ static int choose(const nevh_system *s, const places *x,
             const nevh__term_entry *term = s->terms[i];
             bool given =
                 term->decl.np || s->effects[term->effect].speed == NEVH_FAST;
-            if (pass == 1 && part[i] == NEVH__CENTRE && !own(x, &term->decl))
+            if (pass == 1 && part[i] == NEVH__CENTRE &&
+                !centres_own(x, &term->decl))
                 part[i] = NEVH__KICK;
             if (pass == 1 || part[i] != NEVH__FORM || given != (pass == 0))
                 continue;
@@ -99,7 +102,7 @@ int nevh__centres_choose(const nevh_system *s, nevh__part_role part[]) {
         any |= part[i] == NEVH__CENTRE;
     int status = x.inverse_mass && x.other && x.owned ? NEVH_OK : NEVH_ENOMEM;
     if (any && !status)
-        status = choose(s, &x, part);
+        status = centres_choose(s, &x, part);
     free(x.inverse_mass);
     free(x.other);
     free(x.owned);

@@ -66,7 +66,7 @@ static double pair_squared(const column *b, size_t i, size_t j) {
     return sum;
 }
 
-static double closeness(const column *b) {
+static double closeness_closeness(const column *b) {
     double sum = 0;
     for (size_t i = 0; i < b->bodies; i++)
         for (size_t j = 0; j < i; j++)
@@ -86,7 +86,7 @@ static void closeness_block(size_t width, const double t[], const double q[],
     (void)t, (void)p, (void)params;
     for (size_t i = 0; i < width; i++) {
         column b = column_at(width, q, c, i);
-        h[i] = pow(closeness(&b), -c[i] / 2);
+        h[i] = pow(closeness_closeness(&b), -c[i] / 2);
     }
 }
 
@@ -109,7 +109,7 @@ static void closeness_gradient(size_t width, const double t[], const double q[],
     (void)t, (void)p, (void)params, (void)dp;
     for (size_t i = 0; dq && i < width; i++) {
         column b = column_at(width, q, c, i);
-        double slope = -c[i] / 2 * pow(closeness(&b), -c[i] / 2 - 1);
+        double slope = -c[i] / 2 * pow(closeness_closeness(&b), -c[i] / 2 - 1);
         for (size_t k = 0; k < b.bodies * b.dimensions; k++)
             dq[k * width + i] = 0;
         for (size_t j = 0; j < b.bodies; j++)

@@ -19,17 +19,17 @@ typedef struct {
     long double ec, es, M;
 } equation;
 
-static long double excess(const equation *k, long double E) {
+static long double ellipse_excess(const equation *k, long double E) {
     long double half = sinl(E / 2);
     return E - k->ec * sinl(E) + 2 * k->es * half * half - k->M;
 }
 
-static double miss(double E, void *data) {
-    return (double)excess(data, E);
+static double ellipse_miss(double E, void *data) {
+    return (double)ellipse_excess(data, E);
 }
 
-static double solve(gsl_root_fsolver *solver, equation *k) {
-    gsl_function f = {miss, k};
+static double ellipse_solve(gsl_root_fsolver *solver, equation *k) {
+    gsl_function f = {ellipse_miss, k};
     double M = (double)k->M, wide = (double)(2 * hypotl(k->ec, k->es)) + 1e-9;
     double root = M;
     int status = gsl_root_fsolver_set(solver, &f, M - wide, M + wide);
@@ -44,7 +44,8 @@ static double solve(gsl_root_fsolver *solver, equation *k) {
     return root;
 }
 
-static long double dot(size_t n, const long double a[], const long double b[]) {
+static long double ellipse_dot(size_t n, const long double a[],
+                               const long double b[]) {
     long double sum = 0;
     for (size_t i = 0; i < n; i++)
         sum += a[i] * b[i];
@@ -53,14 +54,15 @@ static long double dot(size_t n, const long double a[], const long double b[]) {
 
 void nevh__ellipse(gsl_root_fsolver *solver, long double mu, long double t,
                    size_t n, long double r[], long double v[]) {
-    long double r0 = sqrtl(dot(n, r, r));
-    long double a = 1 / (2 / r0 - dot(n, v, v) / mu);
+    long double r0 = sqrtl(ellipse_dot(n, r, r));
+    long double a = 1 / (2 / r0 - ellipse_dot(n, v, v) / mu);
     long double rate = sqrtl(mu / a) / a, M = rate * t;
     long double f = NAN, g = NAN, df = NAN, dg = NAN;
     if (fabsl(M) < 1 / LDBL_EPSILON) {
-        equation k = {.ec = 1 - r0 / a, .es = dot(n, r, v) / sqrtl(mu * a)};
+        equation k = {.ec = 1 - r0 / a,
+                      .es = ellipse_dot(n, r, v) / sqrtl(mu * a)};
         k.M = M - 2 * PI * rintl(M / (2 * PI));
-        long double E = solve(solver, &k), sine = sinl(E);
+        long double E = ellipse_solve(solver, &k), sine = sinl(E);
         long double half = sinl(E / 2), versine = 2 * half * half;
         long double r1 = a * (1 - k.ec * cosl(E) + k.es * sine);
         f = 1 - a / r0 * versine;

@@ -4,7 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-static int check(nevh_system *s, const char *effect, const double rates[]) {
+static int friction_check(nevh_system *s, const char *effect,
+                          const double rates[]) {
     if (!effect || !effect[0])
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "friction needs the name of its effect");
@@ -23,7 +24,8 @@ static int check(nevh_system *s, const char *effect, const double rates[]) {
 }
 
 /* Makes room first, so that the system is as before when memory is out. */
-static int append(nevh_system *s, const char *name, const double rates[]) {
+static int friction_append(nevh_system *s, const char *name,
+                           const double rates[]) {
     nevh__friction *all =
         nevh__grow(s->frictions, s->n_frictions + 1, sizeof *all);
     s->frictions = all ? all : s->frictions;
@@ -42,8 +44,8 @@ int nevh_system_add_friction(nevh_system *s, const char *effect,
                              const double rates[]) {
     if (nevh_system_status(s))
         return nevh_system_status(s);
-    int status = check(s, effect, rates);
-    return status ? status : append(s, effect, rates);
+    int status = friction_check(s, effect, rates);
+    return status ? status : friction_append(s, effect, rates);
 }
 
 bool nevh_system_friction(const nevh_system *s, double rates[]) {

@@ -20,8 +20,9 @@ typedef struct {
 } lines;
 
 /* Writes one variable of two lines: lanes 0 ... 3 and 4 ... 7. */
-static void write_row(nevh__origin *o, const double x[], size_t first, size_t i,
-                      const double amplitude[2], double row[8]) {
+static void kinetic_write_row(nevh__origin *o, const double x[], size_t first,
+                              size_t i, const double amplitude[2],
+                              double row[8]) {
     bool moves = first > 0;
     for (size_t line = 0; line < 2; line++) {
         double width = amplitude[line] * nevh__spread(o, x, first, i);
@@ -57,11 +58,11 @@ static lines find_lines(const nevh__term_entry *term, size_t instance,
     for (int round = 0; round < LINES / 2; round++) {
         double amplitude[2] = {ldexp(4, -round), ldexp(2.8, -round)};
         for (size_t k = 0; k < decl->nq; k++)
-            write_row(o, o->q, 0, decl->q[instance * decl->nq + k], amplitude,
-                      q + 8 * k);
+            kinetic_write_row(o, o->q, 0, decl->q[instance * decl->nq + k],
+                              amplitude, q + 8 * k);
         for (size_t k = 0; k < decl->np; k++)
-            write_row(o, o->p, o->n, decl->p[instance * decl->np + k],
-                      amplitude, p + 8 * k);
+            kinetic_write_row(o, o->p, o->n, decl->p[instance * decl->np + k],
+                              amplitude, p + 8 * k);
         nevh__term_values(term, false, 8, 8, t, q, p, c, h, one);
         add_line(&l, h);
         add_line(&l, h + 4);

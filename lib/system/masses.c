@@ -17,7 +17,8 @@ const double *nevh__term_inverse_masses(const nevh__term_entry *term) {
     return term->decl.gradient == mass_gradient ? term->decl.c : NULL;
 }
 
-static int check(nevh_system *s, const char *effect, const double masses[]) {
+static int masses_check(nevh_system *s, const char *effect,
+                        const double masses[]) {
     char name[NEVH__VARIABLE];
     for (size_t k = 0; masses && k < s->n; k++)
         if (!isfinite(1 / masses[k]) || !isfinite(masses[k]))
@@ -29,8 +30,8 @@ static int check(nevh_system *s, const char *effect, const double masses[]) {
     return NEVH_OK;
 }
 
-static int add(nevh_system *s, const char *effect, const double masses[],
-               size_t index[], double inverse[]) {
+static int masses_add(nevh_system *s, const char *effect, const double masses[],
+                      size_t index[], double inverse[]) {
     for (size_t k = 0; k < s->n; k++) {
         index[k] = k;
         inverse[k] = masses ? 1 / masses[k] : 1;
@@ -49,12 +50,12 @@ int nevh_system_add_masses(nevh_system *s, const char *effect,
                            const double masses[]) {
     int status = nevh_system_status(s);
     if (!status)
-        status = check(s, effect, masses);
+        status = masses_check(s, effect, masses);
     if (status)
         return status;
     size_t *index = nevh__array(s->n, sizeof *index);
     double *inverse = nevh__array(s->n, sizeof *inverse);
-    status = index && inverse ? add(s, effect, masses, index, inverse)
+    status = index && inverse ? masses_add(s, effect, masses, index, inverse)
                               : nevh__no_memory(&s->report);
     free(index);
     free(inverse);

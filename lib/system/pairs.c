@@ -14,13 +14,13 @@ static bool moves_with(const nevh__pairs *x, size_t k, size_t with) {
     return true;
 }
 
-static size_t distance(size_t a, size_t b) {
+static size_t pairs_distance(size_t a, size_t b) {
     return a > b ? a - b : b - a;
 }
 
 /* Sets which variables are of the second body, and that of them which is nearest to
    the first body's first. */
-static bool divide(nevh__pairs *x) {
+static bool pairs_divide(nevh__pairs *x) {
     size_t other = SIZE_MAX;
     for (size_t k = 0; k < x->nq; k++) {
         if (moves_with(x, k, 0))
@@ -30,7 +30,8 @@ static bool divide(nevh__pairs *x) {
         if (!moves_with(x, k, other))
             return false;
         x->of_second |= (uint64_t)1 << k;
-        if (distance(x->q[k], x->q[0]) < distance(x->q[x->second], x->q[0]))
+        if (pairs_distance(x->q[k], x->q[0]) <
+            pairs_distance(x->q[x->second], x->q[0]))
             x->second = k;
     }
     return other != SIZE_MAX;
@@ -67,7 +68,7 @@ static bool stand_apart(nevh__pairs *x, size_t span) {
     for (size_t k = 0; k < x->nq; k++)
         for (size_t j = 0; j < k; j++) {
             size_t gap =
-                distance(nevh__pairs_base(x, k), nevh__pairs_base(x, j));
+                pairs_distance(nevh__pairs_base(x, k), nevh__pairs_base(x, j));
             bool alike = !((x->of_second >> k ^ x->of_second >> j) & 1);
             if (gap < span && (gap > 0 || alike))
                 return false;
@@ -79,7 +80,7 @@ static bool stand_apart(nevh__pairs *x, size_t span) {
 bool nevh__pairs_find(nevh__pairs *x, size_t nq, size_t np, size_t count,
                       const size_t q[]) {
     *x = (nevh__pairs){.nq = nq, .count = count, .q = q};
-    if (np || nq > MOST_VARIABLES || count < FEWEST_PAIRS || !divide(x))
+    if (np || nq > MOST_VARIABLES || count < FEWEST_PAIRS || !pairs_divide(x))
         return false;
     set_first(x);
     count_bodies(x);

@@ -28,8 +28,8 @@ size_t nevh__form_room(const nevh_term *decl) {
     return NEVH__LANES * (3 * nv + decl->nc + 2) + nv + decl->nc;
 }
 
-static trial lay_out(const nevh__term_entry *term, size_t instance,
-                     double *room) {
+static trial parts_lay_out(const nevh__term_entry *term, size_t instance,
+                           double *room) {
     const nevh_term *decl = &term->decl;
     trial x = {.term = term, .nv = decl->nq + decl->np};
     size_t size = NEVH__LANES * x.nv;
@@ -120,7 +120,7 @@ static bool follows(const trial *x, size_t lane, double step,
 bool nevh__form_find(const nevh__term_entry *term, size_t instance,
                      double form[], double room[]) {
     static const int powers[TRIALS] = {-20, 0, 20, 45};
-    trial x = lay_out(term, instance, room);
+    trial x = parts_lay_out(term, instance, room);
     uint64_t random = 1;
     for (size_t j = 0; j < x.nv; j++)
         find_column(&x, j, form);
@@ -157,7 +157,7 @@ bool nevh__centre_find(const nevh__term_entry *term, size_t instance, double *k,
     const nevh_term *decl = &term->decl;
     if (decl->nq < 2 || decl->nq > NEVH__SPACE || decl->np)
         return false;
-    trial x = lay_out(term, instance, room);
+    trial x = parts_lay_out(term, instance, room);
     x.z[0] = 1;
     take_values(&x, distance);
     *k = -x.h[0];
@@ -192,8 +192,8 @@ static int classify(const nevh__term_entry *term, bool *form, bool *centre) {
 
 enum { MOST_READ = 64 }; /* by an instance of a form */
 
-static int choose(const nevh_system *s, const nevh__term_entry *term,
-                  nevh__part_role *part) {
+static int parts_choose(const nevh_system *s, const nevh__term_entry *term,
+                        nevh__part_role *part) {
     const nevh_term *decl = &term->decl;
     size_t nv = decl->nq + decl->np;
     bool form = false, centre = false;
@@ -227,7 +227,7 @@ int nevh__parts_find(const nevh_system *s, bool fast[],
     bool any = false;
     *fault = (nevh__parts_fault){NULL, NULL};
     for (size_t i = 0; !status && i < s->n_terms; i++)
-        status = choose(s, s->terms[i], &part[i]);
+        status = parts_choose(s, s->terms[i], &part[i]);
     if (!status)
         status = nevh__centres_choose(s, part);
     for (size_t i = 0; !status && i < s->n_terms; i++) {

@@ -12,13 +12,13 @@ typedef struct {
     locale_t mine, before;
 } in_c_locale;
 
-static in_c_locale enter(void) {
+static in_c_locale print_enter(void) {
     in_c_locale at = {.mine = newlocale(LC_ALL_MASK, "C", (locale_t)0)};
     at.before = at.mine ? uselocale(at.mine) : (locale_t)0;
     return at;
 }
 
-static void leave(in_c_locale at) {
+static void print_leave(in_c_locale at) {
     if (!at.mine)
         return;
     uselocale(at.before);
@@ -27,9 +27,9 @@ static void leave(in_c_locale at) {
 
 int nevh__vprint(char text[], size_t size, const char *format,
                  va_list arguments) {
-    in_c_locale at = enter();
+    in_c_locale at = print_enter();
     int length = vsnprintf(text, size, format, arguments);
-    leave(at);
+    print_leave(at);
     return length;
 }
 
@@ -42,8 +42,8 @@ int nevh__print(char text[], size_t size, const char *format, ...) {
 }
 
 double nevh__read_number(const char *text) {
-    in_c_locale at = enter();
+    in_c_locale at = print_enter();
     double number = strtod(text, NULL);
-    leave(at);
+    print_leave(at);
     return number;
 }

@@ -16,7 +16,7 @@
 enum { PAIRS = 16 }; /* two of them, four values each, fill a block */
 static const double roundings = 16;
 
-static double largest(const double x[], size_t n) {
+static double probe_largest(const double x[], size_t n) {
     double most = 0;
     for (size_t i = 0; x && i < n; i++)
         most = fmax(most, fabs(x[i]));
@@ -25,13 +25,14 @@ static double largest(const double x[], size_t n) {
 
 nevh__origin nevh__origin_at(size_t n, double t, const double q[],
                              const double p[], const double scale[]) {
-    return (nevh__origin){.t = t,
-                          .q = q,
-                          .p = p,
-                          .scale = scale,
-                          .n = n,
-                          .random = 1,
-                          .largest = {largest(q, n), largest(p, n)}};
+    return (nevh__origin){
+        .t = t,
+        .q = q,
+        .p = p,
+        .scale = scale,
+        .n = n,
+        .random = 1,
+        .largest = {probe_largest(q, n), probe_largest(p, n)}};
 }
 
 double nevh__spread(const nevh__origin *o, const double x[], size_t first,
@@ -45,9 +46,9 @@ double nevh__spread(const nevh__origin *o, const double x[], size_t first,
 /* Writes one variable of both pairs: lanes 0 ... 3 are the first pair's
    (1,1) (2,2) (1,2) (2,1), lanes 4 ... 7 the second's.  `second` says which
    lanes take the second state. */
-static void write_row(nevh__origin *o, const double x[], size_t first, size_t i,
-                      const double amplitude[2], const bool second[8],
-                      double row[8]) {
+static void probe_write_row(nevh__origin *o, const double x[], size_t first,
+                            size_t i, const double amplitude[2],
+                            const bool second[8], double row[8]) {
     for (size_t pair = 0; pair < 2; pair++) {
         double width = amplitude[pair] * nevh__spread(o, x, first, i);
         double base = x ? x[i] : 0;
@@ -73,11 +74,11 @@ static double probe_instance(const nevh__term_entry *term, size_t instance,
     for (size_t round = 0; round < PAIRS / 2; round++) {
         double amplitude[2] = {ldexp(1, -(int)round), ldexp(0.7, -(int)round)};
         for (size_t k = 0; k < decl->nq; k++)
-            write_row(o, o->q, 0, decl->q[instance * decl->nq + k], amplitude,
-                      second_q, q + 8 * k);
+            probe_write_row(o, o->q, 0, decl->q[instance * decl->nq + k],
+                            amplitude, second_q, q + 8 * k);
         for (size_t k = 0; k < decl->np; k++)
-            write_row(o, o->p, o->n, decl->p[instance * decl->np + k],
-                      amplitude, second_p, p + 8 * k);
+            probe_write_row(o, o->p, o->n, decl->p[instance * decl->np + k],
+                            amplitude, second_p, p + 8 * k);
         nevh__term_values(term, false, 8, 8, t, q, p, c, h, one);
         for (double *v = h; v < h + 8; v += 4) {
             double size = fabs(v[0]) + fabs(v[1]) + fabs(v[2]) + fabs(v[3]);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* FNV-1a, http://www.isthe.com/chongo/tech/comp/fnv/ */
-static size_t hash(const char *name) {
+static size_t register_hash(const char *name) {
     uint64_t h = 0xcbf29ce484222325u;
     for (; *name; name++)
         h = (h ^ (unsigned char)*name) * 0x100000001b3u;
@@ -14,7 +14,7 @@ static size_t hash(const char *name) {
 
 /* The entry of a name, or the free one for it. */
 static nevh__registered *entry_of(const nevh__register *x, const char *name) {
-    size_t i = hash(name) & (x->capacity - 1);
+    size_t i = register_hash(name) & (x->capacity - 1);
     while (x->entries[i].name && strcmp(x->entries[i].name, name) != 0)
         i = (i + 1) & (x->capacity - 1);
     return &x->entries[i];

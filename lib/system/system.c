@@ -160,7 +160,7 @@ size_t nevh__effect_index(nevh_system *s, const char *name) {
 }
 
 /* Makes room first, so that the system is as before when memory is out. */
-static int append(nevh_system *s, const nevh_term *from) {
+static int system_append(nevh_system *s, const nevh_term *from) {
     nevh__term_entry **terms =
         nevh__grow(s->terms, s->n_terms + 1, sizeof(nevh__term_entry *));
     if (!terms)
@@ -190,7 +190,7 @@ int nevh_system_add(nevh_system *s, const nevh_term *from) {
     if (!term.count)
         term.count = 1;
     int status = check_term(s, &term);
-    return status ? status : append(s, &term);
+    return status ? status : system_append(s, &term);
 }
 
 /* NULL, with a status: there is none, or the system has failed. */

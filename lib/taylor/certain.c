@@ -39,13 +39,14 @@ enum { DIGITS_OF_PAIRS = 24 };
 /* Rounding alone, of a series: inner sums have 106 bits, pairs 104 or so. */
 static const double rounding = 1e-32, rounding_of_pairs = 1e-31;
 
-static void clear(orbit *o) {
+static void certain_clear(orbit *o) {
     nevh__series_orbit_clear_dd(&o->dd);
     nevh__series_orbit_clear_quad(&o->quad);
 }
 
-static int start(nevh_certain *c, orbit *o, bool pairs, double tolerance) {
-    clear(o);
+static int certain_start(nevh_certain *c, orbit *o, bool pairs,
+                         double tolerance) {
+    certain_clear(o);
     o->pairs = pairs;
     bool fine =
         o->pairs
@@ -80,7 +81,7 @@ static double term(const orbit *o, size_t k) {
     return o->pairs ? o->dd.term[k] : o->quad.term[k];
 }
 
-static size_t count(const orbit *o) {
+static size_t certain_count(const orbit *o) {
     return o->pairs ? o->dd.count : o->quad.count;
 }
 
@@ -97,17 +98,18 @@ static void shorten_first(orbit *o) {
 static int start_both(nevh_certain *c, bool pairs) {
     /* Errors of some hundred series add up. */
     double tolerance = pow(10, -c->digits - 4), finest = 2e-33;
-    int status = start(c, &c->coarse, pairs, fmax(tolerance, 10 * finest));
+    int status =
+        certain_start(c, &c->coarse, pairs, fmax(tolerance, 10 * finest));
     if (status)
         return status;
     shorten_first(&c->coarse);
     c->at = 0;
     c->parted = INFINITY;
-    return start(c, &c->fine, pairs, fmax(tolerance / 30, finest));
+    return certain_start(c, &c->fine, pairs, fmax(tolerance / 30, finest));
 }
 
-static int make(nevh_certain *c, const nevh_system *system,
-                const nevh__certain_start *from) {
+static int certain_make(nevh_certain *c, const nevh_system *system,
+                        const nevh__certain_start *from) {
     size_t n = system->n;
     if (system->report.status)
         return nevh__fail_as(&c->report, &system->report);
@@ -139,7 +141,7 @@ nevh_certain *nevh__certain_from(const nevh_system *system,
     if (!c)
         return NULL;
     c->digits = digits;
-    if (make(c, system, from) != NEVH_ENOMEM)
+    if (certain_make(c, system, from) != NEVH_ENOMEM)
         return c;
     nevh_certain_free(c);
     return NULL;
@@ -172,8 +174,8 @@ nevh_certain *nevh_certain_new(const nevh_system *system, double t0,
 void nevh_certain_free(nevh_certain *c) {
     if (!c)
         return;
-    clear(&c->fine);
-    clear(&c->coarse);
+    certain_clear(&c->fine);
+    certain_clear(&c->coarse);
     nevh__recurrence_free(c->recurrence);
     nevh_timing_free(c->timing);
     free(c->start);
@@ -269,7 +271,8 @@ static int look_ahead(nevh_certain *c, double t) {
                           "be certain that no change is missed",
                           t0, t);
     }
-    clear(&c->fine), clear(&c->coarse); /* they borrow the former one */
+    certain_clear(&c->fine),
+        certain_clear(&c->coarse); /* they borrow the former one */
     nevh_timing_free(c->timing);
     c->timing = timing;
     c->seen = seen;
@@ -278,7 +281,7 @@ static int look_ahead(nevh_certain *c, double t) {
 
 int nevh_certain_go_to(nevh_certain *c, double time, long double rest) {
     nevh__wide t = (nevh__wide)time + rest;
-    if (!c || !count(&c->fine))
+    if (!c || !certain_count(&c->fine))
         return nevh_certain_status(c);
     c->report = (nevh__report){0};
     if (!isfinite((double)t))
@@ -294,30 +297,30 @@ int nevh_certain_go_to(nevh_certain *c, double time, long double rest) {
 }
 
 size_t nevh_certain_series(const nevh_certain *c) {
-    return c ? count(&c->fine) + count(&c->coarse) : 0;
+    return c ? certain_count(&c->fine) + certain_count(&c->coarse) : 0;
 }
 
-static bool has(const nevh_certain *c, size_t k) {
-    return c && count(&c->fine) && k < 2 * c->n;
+static bool certain_has(const nevh_certain *c, size_t k) {
+    return c && certain_count(&c->fine) && k < 2 * c->n;
 }
 
 double nevh_certain_value(const nevh_certain *c, size_t k) {
-    return has(c, k) ? (double)state(&c->fine, k) : NAN;
+    return certain_has(c, k) ? (double)state(&c->fine, k) : NAN;
 }
 
 double nevh_certain_error(const nevh_certain *c, size_t k) {
-    if (!has(c, k))
+    if (!certain_has(c, k))
         return NAN;
     double once = c->fine.pairs ? rounding_of_pairs : rounding;
     double size = fmax(most(&c->fine, k), term(&c->fine, k));
-    double floor = once * sqrt((double)count(&c->fine)) * size;
+    double floor = once * sqrt((double)certain_count(&c->fine)) * size;
     if (fabs(c->at) >= c->parted)
         floor = 2 * most(&c->fine, k);
     return fmax(2 * apart(c, k), floor);
 }
 
 double nevh_certain_size(const nevh_certain *c, size_t k) {
-    return has(c, k) ? most(&c->fine, k) : NAN;
+    return certain_has(c, k) ? most(&c->fine, k) : NAN;
 }
 
 int nevh_certain_digits(const nevh_certain *c, size_t k) {
@@ -333,7 +336,7 @@ int nevh_certain_digits(const nevh_certain *c, size_t k) {
 }
 
 char *nevh_certain_text(const nevh_certain *c, size_t k) {
-    char *text = has(c, k) ? nevh__array(ROOM, 1) : NULL;
+    char *text = certain_has(c, k) ? nevh__array(ROOM, 1) : NULL;
     int digits = nevh_certain_digits(c, k);
     if (text)
         strcpy(text, "0");

@@ -18,13 +18,14 @@ typedef struct {
     size_t n_roots, capacity;
 } reader;
 
-static int refuse(const reader *r, const nevh_term *term, const char *what) {
+static int derive_refuse(const reader *r, const nevh_term *term,
+                         const char *what) {
     return nevh__fail(r->report, NEVH_ESTRUCT,
                       "term \"%s\" of effect \"%s\" has no Taylor series: %s",
                       term->name, term->effect, what);
 }
 
-static int out_of_memory(const reader *r) {
+static int derive_out_of_memory(const reader *r) {
     return r->g->overflowed
                ? nevh__fail(r->report, NEVH_ESTRUCT,
                             "H has more than %d operations with its "
@@ -56,7 +57,7 @@ static int refuse_operation(const reader *r, const nevh_term *term,
     snprintf(text, sizeof text, "its function %s(...) %s",
              nevh__operation_name((nevh__tape_operation)c->operation),
              why_not(c));
-    return refuse(r, term, text);
+    return derive_refuse(r, term, text);
 }
 
 /* Tags the nodes made since the last call. */
@@ -68,8 +69,9 @@ static void tag(reader *r, int what, bool backwards) {
 }
 
 /* The node of an operand of an instance. */
-static int operand(const reader *r, const nevh_term *term, size_t instance,
-                   const int slots[], nevh__tape_operand o) {
+static int derive_operand(const reader *r, const nevh_term *term,
+                          size_t instance, const int slots[],
+                          nevh__tape_operand o) {
     const nevh__tape *tape = term->params;
     switch (o.kind) {
     case NEVH__T:
@@ -89,7 +91,7 @@ static int operand(const reader *r, const nevh_term *term, size_t instance,
 }
 
 /* sin and cos of one argument are two operations. */
-static int operate(nevh__graph *g, unsigned operation, int a, int b) {
+static int derive_operate(nevh__graph *g, unsigned operation, int a, int b) {
     return nevh__graph_apply(
         g,
         operation == NEVH__SINCOS ? NEVH__SIN : (nevh__tape_operation)operation,
@@ -107,8 +109,8 @@ static int read_instance(reader *r, const nevh_term *term, size_t instance,
     const nevh__tape *tape = term->params;
     for (size_t i = 0; i < tape->length; i++) {
         const nevh__instruction *c = &tape->code[i];
-        int a = operand(r, term, instance, slots, c->a);
-        int b = operand(r, term, instance, slots, c->b);
+        int a = derive_operand(r, term, instance, slots, c->a);
+        int b = derive_operand(r, term, instance, slots, c->b);
         bool between = is_between_breaks(r, c);
         if (why_not(c) && !between &&
             !(nevh__graph_is_number(r->g, a, NULL) &&
@@ -116,19 +118,19 @@ static int read_instance(reader *r, const nevh_term *term, size_t instance,
             return refuse_operation(r, term, c);
         if (!between)
             nevh__graph_watch(r->g, c->operation, a, b, term->effect);
-        slots[c->to] = operate(r->g, c->operation, a, b);
+        slots[c->to] = derive_operate(r->g, c->operation, a, b);
         if (c->operation == NEVH__SINCOS)
-            slots[c->also] = operate(r->g, NEVH__COS, a, a);
+            slots[c->also] = derive_operate(r->g, NEVH__COS, a, a);
         tag(r, (int)i, false);
     }
-    int root = operand(r, term, instance, slots, tape->result);
+    int root = derive_operand(r, term, instance, slots, tape->result);
     if (r->g->failed)
-        return out_of_memory(r);
+        return derive_out_of_memory(r);
     if (r->n_roots == r->capacity) {
         size_t capacity = 2 * r->capacity + 16;
         int *roots = nevh__grow(r->roots, capacity, sizeof *roots);
         if (!roots)
-            return out_of_memory(r);
+            return derive_out_of_memory(r);
         r->roots = roots;
         r->capacity = capacity;
     }
@@ -139,12 +141,12 @@ static int read_instance(reader *r, const nevh_term *term, size_t instance,
 static int read_term(reader *r, const nevh__term_entry *entry) {
     const nevh_term *term = &entry->decl;
     if (term->value != nevh__tape_value)
-        return refuse(r, term,
-                      "it is a function in C, and a series needs a formula");
+        return derive_refuse(
+            r, term, "it is a function in C, and a series needs a formula");
     const nevh__tape *tape = term->params;
     int *slots = nevh__array(tape->slots, sizeof *slots), status = NEVH_OK;
     if (!slots)
-        return out_of_memory(r);
+        return derive_out_of_memory(r);
     for (size_t i = 0; !status && i < term->count; i++)
         status = read_instance(r, term, i, slots);
     free(slots);
@@ -155,7 +157,7 @@ static int read_term(reader *r, const nevh__term_entry *entry) {
 static int watch_poles(reader *r) {
     nevh__graph_watch_poles(r->g, NULL);
     tag(r, 0, false);
-    return r->g->failed ? out_of_memory(r) : NEVH_OK;
+    return r->g->failed ? derive_out_of_memory(r) : NEVH_OK;
 }
 
 static void add_to(nevh__graph *g, int *sum, int what) {
@@ -207,14 +209,14 @@ static void set_slope(reader *r, int i, int derivative, int slope[]) {
         slope[k - n] = derivative;
 }
 
-static int sweep(reader *r, const nevh__wide friction[], int slope[]) {
+static int derive_sweep(reader *r, const nevh__wide friction[], int slope[]) {
     nevh__graph *g = r->g;
     size_t n = r->n;
     int used = g->used, zero = nevh__graph_number(g, 0);
     int one = nevh__graph_number(g, 1);
     int *of = nevh__array((size_t)used, sizeof *of);
     if (!of)
-        return out_of_memory(r);
+        return derive_out_of_memory(r);
     for (int i = 0; i < used; i++)
         of[i] = -1;
     for (size_t i = 0; i < r->n_roots && !g->failed; i++)
@@ -233,7 +235,7 @@ static int sweep(reader *r, const nevh__wide friction[], int slope[]) {
             g, slope[n + k],
             nevh__graph_scale(g, -friction[k], nevh__graph_variable(g, n + k)));
     free(of);
-    return g->failed ? out_of_memory(r) : NEVH_OK;
+    return g->failed ? derive_out_of_memory(r) : NEVH_OK;
 }
 
 int nevh__graph_of_system(nevh__graph *g, const nevh_system *system,
@@ -249,7 +251,7 @@ int nevh__graph_of_system(nevh__graph *g, const nevh_system *system,
     if (!status)
         status = watch_poles(&r);
     if (!status)
-        status = sweep(&r, friction, slope);
+        status = derive_sweep(&r, friction, slope);
     free(r.roots);
     return status;
 }

@@ -21,21 +21,21 @@ typedef struct {
 } polynomial;
 
 /* The sum of the sizes of the terms from order 1 on, at h. */
-static double size_of(polynomial p, double h) {
+static double domain_size_of(polynomial p, double h) {
     double sum = 0;
     for (size_t k = p.orders; --k > 0;)
         sum = sum * h + fabs(p.at[k * p.apart]);
     return sum * h;
 }
 
-static double slope_of(polynomial p, double h) {
+static double domain_slope_of(polynomial p, double h) {
     double sum = 0;
     for (size_t k = p.orders; --k > 0;)
         sum = sum * h + (double)k * fabs(p.at[k * p.apart]);
     return sum;
 }
 
-static double value_of(polynomial p, double since) {
+static double domain_value_of(polynomial p, double since) {
     double sum = 0;
     for (size_t k = p.orders; k-- > 0;)
         sum = sum * since + p.at[k * p.apart];
@@ -50,7 +50,7 @@ static bool keeps_on(polynomial p, double h, double size, double slope) {
     enum { MOST_STEPS = 40 };
     double sign = p.at[0] > 0 ? 1 : -1, t = 0;
     for (int i = 0; i < MOST_STEPS && t < fabs(h); i++) {
-        double value = sign * value_of(p, copysign(t, h));
+        double value = sign * domain_value_of(p, copysign(t, h));
         if (!(value > noise * size))
             return false;
         t += value / slope;
@@ -59,20 +59,20 @@ static bool keeps_on(polynomial p, double h, double size, double slope) {
 }
 
 static bool keeps_sign(polynomial p, double h) {
-    double change = size_of(p, h);
+    double change = domain_size_of(p, h);
     if (fabs(p.at[0]) > change)
         return true;
-    double size = fabs(p.at[0]) + change, slope = slope_of(p, h);
+    double size = fabs(p.at[0]) + change, slope = domain_slope_of(p, h);
     return keeps_on(p, h, size, slope) && keeps_on(p, -h, size, slope);
 }
 
 /* It may touch 0, but not be less. */
 static bool is_not_negative(polynomial p, double h) {
     enum { PLACES = 8 };
-    double least = -noise * (fabs(p.at[0]) + size_of(p, h));
+    double least = -noise * (fabs(p.at[0]) + domain_size_of(p, h));
     bool not_less = true;
     for (int i = -PLACES; i <= PLACES; i++)
-        not_less = not_less && value_of(p, h * i / PLACES) >= least;
+        not_less = not_less && domain_value_of(p, h * i / PLACES) >= least;
     return not_less;
 }
 
@@ -97,7 +97,7 @@ static bool is_small_power(polynomial a, double c, double change) {
 static bool is_resolved(const nevh__edge *e, polynomial a, double h) {
     static const double part = 1 / 3.0; /* of the order */
     static const double saturated = 50; /* tanh(50) = 1 - 7e-44 */
-    double most = part * (double)a.orders, change = size_of(a, h);
+    double most = part * (double)a.orders, change = domain_size_of(a, h);
     double at = a.at[0];
     switch (e->function) {
     case NEVH__EXP:
@@ -125,8 +125,8 @@ static bool is_clear(const nevh__recurrence *r, const double rows[],
 }
 
 /* Out, which: the edge of a domain that was met last, if any. */
-static double shorten(const nevh__recurrence *r, const double rows[],
-                      size_t orders, double reach, size_t *which) {
+static double domain_shorten(const nevh__recurrence *r, const double rows[],
+                             size_t orders, double reach, size_t *which) {
     enum { MOST_HALVINGS = 200 };
     static const double most =
         0x1p60; /* of series that end, and hold for ever */
@@ -143,7 +143,7 @@ static double shorten(const nevh__recurrence *r, const double rows[],
 double nevh__domain_reach(const nevh__recurrence *r, const double rows[],
                           size_t orders, double reach) {
     size_t which = SIZE_MAX;
-    return r->n_edges ? shorten(r, rows, orders, reach, &which) : reach;
+    return r->n_edges ? domain_shorten(r, rows, orders, reach, &which) : reach;
 }
 
 size_t nevh__domain_edge(const nevh__recurrence *r, const double rows[],
@@ -154,7 +154,7 @@ size_t nevh__domain_edge(const nevh__recurrence *r, const double rows[],
         for (size_t i = 0; i < r->n_watched; i++)
             all = all && isfinite(rows[finite * r->n_watched + i]);
     if (finite)
-        shorten(r, rows, finite, fmax(beyond * reach, least), &which);
+        domain_shorten(r, rows, finite, fmax(beyond * reach, least), &which);
     return which;
 }
 

@@ -30,7 +30,7 @@ static bool has_steep(nevh__graph *g, const nevh__graph_edge *e) {
 }
 
 /* True if a node was watched before; it is from now on. */
-static bool has(nevh__graph *g, const nevh__graph_edge *e) {
+static bool edges_has(nevh__graph *g, const nevh__graph_edge *e) {
     enum { STRICT = 1, LOOSE = 2 };
     uint8_t *watched = &g->nodes[e->node].watched;
     if (e->steep)
@@ -45,10 +45,10 @@ static bool has(nevh__graph *g, const nevh__graph_edge *e) {
     return had;
 }
 
-static void add(nevh__graph *g, nevh__graph_edge e) {
+static void edges_add(nevh__graph *g, nevh__graph_edge e) {
     if (e.node < 0 || g->failed || nevh__graph_is_number(g, e.node, NULL))
         return;
-    if (has(g, &e))
+    if (edges_has(g, &e))
         return;
     if (g->n_edges == g->edge_capacity) {
         size_t capacity = 2 * g->edge_capacity + 16;
@@ -92,12 +92,12 @@ static void watch_power(nevh__graph *g, unsigned operation, int a, int b,
     double power = power_of(g, operation, a, b, &base);
     double order = power * fmax(g->nodes[base].degree, 1);
     if (order > least || order < -least_pole)
-        add(g, (nevh__graph_edge){.node = base,
-                                  .also = -1,
-                                  .steep = true,
-                                  .function = NEVH__POWER,
-                                  .exponent = power,
-                                  .effect = effect});
+        edges_add(g, (nevh__graph_edge){.node = base,
+                                        .also = -1,
+                                        .steep = true,
+                                        .function = NEVH__POWER,
+                                        .exponent = power,
+                                        .effect = effect});
 }
 
 /* Watches a function that grows faster than any polynomial. */
@@ -115,7 +115,7 @@ static void watch_steep(nevh__graph *g, unsigned operation, int a, int b,
         e.node = nevh__graph_build(g, "b a log *", a, b);
     } else if (!nevh__operation_of(operation)->steep)
         return;
-    add(g, e);
+    edges_add(g, e);
 }
 
 void nevh__graph_watch(nevh__graph *g, unsigned operation, int a, int b,
@@ -141,7 +141,7 @@ void nevh__graph_watch(nevh__graph *g, unsigned operation, int a, int b,
         e.node = a;
         e.also = b;
     }
-    add(g, e);
+    edges_add(g, e);
 }
 
 /* True if a node changes by whole turns where its operands do; *known is false where
@@ -253,14 +253,14 @@ void nevh__graph_watch_poles(nevh__graph *g, const char *effect) {
         const nevh__graph_node x = g->nodes[i];
         bool tangent = x.kind == NEVH__GRAPH_CALL;
         if (mark[i] & SEEN && has_pole(&x))
-            add(g,
-                (nevh__graph_edge){
-                    .node = tangent ? nevh__graph_apply(g, NEVH__COS, x.a, x.a)
-                                    : x.a,
-                    .also = -1,
-                    .strict = true,
-                    .function = tangent ? NEVH__TAN : NEVH__DIVIDE,
-                    .effect = effect});
+            edges_add(g, (nevh__graph_edge){
+                             .node = tangent ? nevh__graph_apply(g, NEVH__COS,
+                                                                 x.a, x.a)
+                                             : x.a,
+                             .also = -1,
+                             .strict = true,
+                             .function = tangent ? NEVH__TAN : NEVH__DIVIDE,
+                             .effect = effect});
     }
     free(mark);
 }

@@ -12,12 +12,12 @@ void nevh__graph_clear(nevh__graph *g) {
     memset(g, 0, sizeof *g);
 }
 
-static bool same(const nevh__graph_node *x, const nevh__graph_node *y) {
+static bool graph_same(const nevh__graph_node *x, const nevh__graph_node *y) {
     return x->kind == y->kind && x->function == y->function && x->a == y->a &&
            x->b == y->b && x->at == y->at && x->number == y->number;
 }
 
-static size_t hash(const nevh__graph_node *x) {
+static size_t graph_hash(const nevh__graph_node *x) {
     double number = (double)x->number;
     uint64_t bits, h = x->kind * 31u + x->function;
     memcpy(&bits, &number, sizeof bits);
@@ -28,14 +28,14 @@ static size_t hash(const nevh__graph_node *x) {
     return (size_t)(h ^ h >> 29);
 }
 
-static size_t slot_of(const nevh__graph *g, const nevh__graph_node *x) {
-    size_t at = hash(x) & (g->slots - 1);
-    while (g->table[at] && !same(&g->nodes[g->table[at] - 1], x))
+static size_t graph_slot_of(const nevh__graph *g, const nevh__graph_node *x) {
+    size_t at = graph_hash(x) & (g->slots - 1);
+    while (g->table[at] && !graph_same(&g->nodes[g->table[at] - 1], x))
         at = (at + 1) & (g->slots - 1);
     return at;
 }
 
-static bool widen(nevh__graph *g) {
+static bool graph_widen(nevh__graph *g) {
     int capacity = g->capacity ? 2 * g->capacity : 256;
     g->overflowed = g->overflowed || capacity > NEVH__GRAPH_NODES;
     if (g->overflowed)
@@ -54,7 +54,7 @@ static bool widen(nevh__graph *g) {
     g->capacity = capacity;
     g->slots = 2 * (size_t)capacity;
     for (int i = 0; i < g->used; i++)
-        g->table[slot_of(g, &g->nodes[i])] = i + 1;
+        g->table[graph_slot_of(g, &g->nodes[i])] = i + 1;
     return true;
 }
 
@@ -76,11 +76,11 @@ static void note_growth(const nevh__graph *g, nevh__graph_node *x) {
 }
 
 static int node(nevh__graph *g, nevh__graph_node x) {
-    if (g->failed || (g->used == g->capacity && !widen(g))) {
+    if (g->failed || (g->used == g->capacity && !graph_widen(g))) {
         g->failed = true;
         return -1;
     }
-    size_t at = slot_of(g, &x);
+    size_t at = graph_slot_of(g, &x);
     if (g->table[at])
         return g->table[at] - 1;
     note_growth(g, &x);
@@ -89,15 +89,15 @@ static int node(nevh__graph *g, nevh__graph_node x) {
     return g->used - 1;
 }
 
-static const nevh__graph_node *at(const nevh__graph *g, int i) {
+static const nevh__graph_node *graph_at(const nevh__graph *g, int i) {
     return &g->nodes[i];
 }
 
 bool nevh__graph_is_number(const nevh__graph *g, int i, nevh__wide *value) {
-    if (i < 0 || at(g, i)->kind != NEVH__GRAPH_NUMBER)
+    if (i < 0 || graph_at(g, i)->kind != NEVH__GRAPH_NUMBER)
         return false;
     if (value)
-        *value = at(g, i)->number;
+        *value = graph_at(g, i)->number;
     return true;
 }
 
@@ -121,8 +121,8 @@ int nevh__graph_variable(nevh__graph *g, size_t k) {
                                       .at = k});
 }
 
-static int operation(nevh__graph *g, nevh__graph_kind kind, nevh__wide x, int a,
-                     int b) {
+static int graph_operation(nevh__graph *g, nevh__graph_kind kind, nevh__wide x,
+                           int a, int b) {
     return node(
         g,
         (nevh__graph_node){
@@ -143,7 +143,7 @@ int nevh__graph_add(nevh__graph *g, int a, int b) {
         return a;
     if (a == b)
         return nevh__graph_scale(g, 2, a);
-    return operation(g, NEVH__GRAPH_ADD, 0, a < b ? a : b, a < b ? b : a);
+    return graph_operation(g, NEVH__GRAPH_ADD, 0, a < b ? a : b, a < b ? b : a);
 }
 
 int nevh__graph_scale(nevh__graph *g, nevh__wide c, int a) {
@@ -154,14 +154,15 @@ int nevh__graph_scale(nevh__graph *g, nevh__wide c, int a) {
         return nevh__graph_number(g, c * x);
     if (c == 0)
         return nevh__graph_number(g, 0);
-    if (at(g, a)->kind == NEVH__GRAPH_SCALE)
-        return nevh__graph_scale(g, c * at(g, a)->number, at(g, a)->a);
-    return c == 1 ? a : operation(g, NEVH__GRAPH_SCALE, c, a, -1);
+    if (graph_at(g, a)->kind == NEVH__GRAPH_SCALE)
+        return nevh__graph_scale(g, c * graph_at(g, a)->number,
+                                 graph_at(g, a)->a);
+    return c == 1 ? a : graph_operation(g, NEVH__GRAPH_SCALE, c, a, -1);
 }
 
 /* node = base^exponent */
 static nevh__wide exponent_of(const nevh__graph *g, int i, int *base) {
-    const nevh__graph_node *x = at(g, i);
+    const nevh__graph_node *x = graph_at(g, i);
     *base = x->a;
     if (x->kind == NEVH__GRAPH_POWER)
         return x->number;
@@ -180,16 +181,18 @@ int nevh__graph_multiply(nevh__graph *g, int a, int b) {
         return nevh__graph_scale(g, x, b);
     if (nevh__graph_is_number(g, b, &x))
         return nevh__graph_scale(g, x, a);
-    if (at(g, a)->kind == NEVH__GRAPH_SCALE) {
-        x = at(g, a)->number;
-        return nevh__graph_scale(g, x, nevh__graph_multiply(g, at(g, a)->a, b));
+    if (graph_at(g, a)->kind == NEVH__GRAPH_SCALE) {
+        x = graph_at(g, a)->number;
+        return nevh__graph_scale(g, x,
+                                 nevh__graph_multiply(g, graph_at(g, a)->a, b));
     }
-    if (at(g, b)->kind == NEVH__GRAPH_SCALE)
+    if (graph_at(g, b)->kind == NEVH__GRAPH_SCALE)
         return nevh__graph_multiply(g, b, a);
     nevh__wide c = exponent_of(g, a, &base), d = exponent_of(g, b, &other);
-    if (base == other && (a != b || at(g, a)->kind == NEVH__GRAPH_POWER))
+    if (base == other && (a != b || graph_at(g, a)->kind == NEVH__GRAPH_POWER))
         return nevh__graph_power(g, base, c + d);
-    return operation(g, NEVH__GRAPH_MULTIPLY, 0, a < b ? a : b, a < b ? b : a);
+    return graph_operation(g, NEVH__GRAPH_MULTIPLY, 0, a < b ? a : b,
+                           a < b ? b : a);
 }
 
 static int invert(nevh__graph *g, int a) {
@@ -199,14 +202,14 @@ static int invert(nevh__graph *g, int a) {
         return -1;
     if (nevh__graph_is_number(g, a, &x))
         return nevh__graph_number(g, 1 / x);
-    if (at(g, a)->kind == NEVH__GRAPH_SCALE) {
-        x = at(g, a)->number;
-        return nevh__graph_scale(g, 1 / x, invert(g, at(g, a)->a));
+    if (graph_at(g, a)->kind == NEVH__GRAPH_SCALE) {
+        x = graph_at(g, a)->number;
+        return nevh__graph_scale(g, 1 / x, invert(g, graph_at(g, a)->a));
     }
     nevh__wide c = exponent_of(g, a, &base);
     if (base != a)
         return nevh__graph_power(g, base, -c);
-    return operation(g, NEVH__GRAPH_INVERT, 0, a, -1);
+    return graph_operation(g, NEVH__GRAPH_INVERT, 0, a, -1);
 }
 
 /* a^n, n > 0, by squaring: a series of its own would divide by a. */
@@ -222,14 +225,14 @@ enum { MOST_MULTIPLIED = 1 << 20 };
 
 /* The factor k of a node k x, and x. */
 static nevh__wide factor_of(const nevh__graph *g, int i, int *x) {
-    bool scaled = at(g, i)->kind == NEVH__GRAPH_SCALE;
-    *x = scaled ? at(g, i)->a : i;
-    return scaled ? at(g, i)->number : 1;
+    bool scaled = graph_at(g, i)->kind == NEVH__GRAPH_SCALE;
+    *x = scaled ? graph_at(g, i)->a : i;
+    return scaled ? graph_at(g, i)->number : 1;
 }
 
 /* The exponent n of a product x^n, or 0. */
 static double whole_exponent(const nevh__graph *g, int i) {
-    const nevh__graph_node *x = at(g, i);
+    const nevh__graph_node *x = graph_at(g, i);
     return x->kind == NEVH__GRAPH_MULTIPLY && x->base != i ? x->power : 0;
 }
 
@@ -248,7 +251,8 @@ static int even_power(nevh__graph *g, int a, nevh__wide c) {
     double n = whole_exponent(g, x), power = n * (double)c;
     if (!(k > 0) || !(power > 0) || !is_even(n) || !is_even(power))
         return -1;
-    return times_power(g, k, c, nevh__graph_power(g, at(g, x)->base, power));
+    return times_power(g, k, c,
+                       nevh__graph_power(g, graph_at(g, x)->base, power));
 }
 
 int nevh__graph_cube_root(nevh__graph *g, int a) {
@@ -260,12 +264,12 @@ int nevh__graph_cube_root(nevh__graph *g, int a) {
     if (n == 0 || fmod(n, 3) != 0)
         return -1;
     return nevh__graph_scale(g, nevh__operation_wide(NEVH__CBRT, k, k),
-                             nevh__graph_power(g, at(g, x)->base, n / 3));
+                             nevh__graph_power(g, graph_at(g, x)->base, n / 3));
 }
 
 /* v of a step (sign(v) + 1)/2, which max and min have; else -1. */
-static int step_of(const nevh__graph *g, int i) {
-    const nevh__graph_node *x = at(g, i);
+static int graph_step_of(const nevh__graph *g, int i) {
+    const nevh__graph_node *x = graph_at(g, i);
     nevh__wide half = 0;
     int a = x->a, b = x->b, sign;
     if (x->kind != NEVH__GRAPH_ADD ||
@@ -275,7 +279,7 @@ static int step_of(const nevh__graph *g, int i) {
         return -1;
     a = nevh__graph_is_number(g, a, NULL) ? b : a;
     half = factor_of(g, a, &sign);
-    x = at(g, sign);
+    x = graph_at(g, sign);
     return half == 0.5 && x->kind == NEVH__GRAPH_CALL &&
                    x->function == NEVH__SIGN
                ? x->a
@@ -287,12 +291,12 @@ static int step_of(const nevh__graph *g, int i) {
 static int power_of_maximum(nevh__graph *g, int a, nevh__wide c) {
     int x, u, v, step;
     nevh__wide k = factor_of(g, a, &x);
-    if (c < 0 || at(g, x)->kind != NEVH__GRAPH_MULTIPLY)
+    if (c < 0 || graph_at(g, x)->kind != NEVH__GRAPH_MULTIPLY)
         return -1;
     for (int i = 0; i < 2; i++) {
-        step = i ? at(g, x)->a : at(g, x)->b;
-        u = i ? at(g, x)->b : at(g, x)->a;
-        int of = step_of(g, step);
+        step = i ? graph_at(g, x)->a : graph_at(g, x)->b;
+        u = i ? graph_at(g, x)->b : graph_at(g, x)->a;
+        int of = graph_step_of(g, step);
         nevh__wide m = of < 0 ? 0 : factor_of(g, of, &v);
         if (of < 0 || v != u || !(k * m > 0))
             continue;
@@ -309,10 +313,13 @@ static int broken_power(nevh__graph *g, int a, nevh__wide c) {
     int simpler = even_power(g, a, c);
     if (simpler < 0)
         simpler = power_of_maximum(g, a, c);
-    double inner = (double)at(g, a)->number; /* a whole one: of either sign */
-    return simpler < 0 && !g->failed && at(g, a)->kind == NEVH__GRAPH_POWER &&
+    double inner =
+        (double)graph_at(g, a)->number; /* a whole one: of either sign */
+    return simpler < 0 && !g->failed &&
+                   graph_at(g, a)->kind == NEVH__GRAPH_POWER &&
                    inner != rint(inner)
-               ? nevh__graph_power(g, at(g, a)->a, at(g, a)->number * c)
+               ? nevh__graph_power(g, graph_at(g, a)->a,
+                                   graph_at(g, a)->number * c)
                : simpler;
 }
 
@@ -330,7 +337,7 @@ int nevh__graph_power(nevh__graph *g, int a, nevh__wide c) {
     int simpler = whole ? -1 : broken_power(g, a, c);
     return simpler >= 0 || g->failed
                ? simpler
-               : operation(g, NEVH__GRAPH_POWER, c, a, -1);
+               : graph_operation(g, NEVH__GRAPH_POWER, c, a, -1);
 }
 
 /* Functions and their derivatives. */
@@ -353,15 +360,16 @@ static int build_operation(void *data, nevh__tape_operation f, int a, int b) {
     return nevh__graph_apply(data, f, a, b);
 }
 
-static int build(nevh__graph *g, const char *formula, const int of[3]) {
+static int graph_build(nevh__graph *g, const char *formula, const int of[3]) {
     const nevh__algebra nodes = {g, build_number, build_operation};
     return nevh__operation_build(formula, of, &nodes);
 }
 
-static int slope_of(nevh__graph *g, nevh__derivative_text by, const int of[3]) {
-    int top = build(g, by.top, of);
-    return by.bottom ? nevh__graph_multiply(g, top,
-                                            invert(g, build(g, by.bottom, of)))
+static int graph_slope_of(nevh__graph *g, nevh__derivative_text by,
+                          const int of[3]) {
+    int top = graph_build(g, by.top, of);
+    return by.bottom ? nevh__graph_multiply(
+                           g, top, invert(g, graph_build(g, by.bottom, of)))
                      : top;
 }
 
@@ -371,8 +379,8 @@ static int call_of_two(nevh__graph *g, nevh__tape_operation f, int a, int b) {
     int by_a = raw_call(g, f, 0, a, b),
         by_b = raw_call(g, NEVH__NOTHING, f, b, a);
     const int of[3] = {a, b, -1};
-    int slope_a = slope_of(g, known->by_a, of);
-    int slope_b = slope_of(g, known->by_b, of);
+    int slope_a = graph_slope_of(g, known->by_a, of);
+    int slope_b = graph_slope_of(g, known->by_b, of);
     if (g->failed)
         return -1;
     g->nodes[by_a].slope = slope_a;
@@ -380,28 +388,29 @@ static int call_of_two(nevh__graph *g, nevh__tape_operation f, int a, int b) {
     return nevh__graph_add(g, by_a, by_b);
 }
 
-static int call(nevh__graph *g, nevh__tape_operation f, int a) {
+static int graph_call(nevh__graph *g, nevh__tape_operation f, int a) {
     int y = raw_call(g, f, 0, a, -1);
     if (y < 0 || g->nodes[y].slope >= 0)
         return y;
     g->nodes[y].slope = y; /* while it is being made: sine and cosine have each
                               other's */
-    int slope = slope_of(g, nevh__operation_of(f)->by_a, (int[]){a, a, y});
+    int slope =
+        graph_slope_of(g, nevh__operation_of(f)->by_a, (int[]){a, a, y});
     if (g->failed)
         return -1;
     g->nodes[y].slope = slope;
     return y;
 }
 
-static int power(nevh__graph *g, int a, int b) {
+static int graph_power(nevh__graph *g, int a, int b) {
     nevh__wide c;
     if (nevh__graph_is_number(g, b, &c))
         return nevh__graph_power(g, a, c);
-    return build(g, "b a log * exp", (int[]){a, b, -1});
+    return graph_build(g, "b a log * exp", (int[]){a, b, -1});
 }
 
 int nevh__graph_build(nevh__graph *g, const char *formula, int a, int b) {
-    return build(g, formula, (int[]){a, b, -1});
+    return graph_build(g, formula, (int[]){a, b, -1});
 }
 
 int nevh__graph_apply(nevh__graph *g, nevh__tape_operation f, int a, int b) {
@@ -424,12 +433,12 @@ int nevh__graph_apply(nevh__graph *g, nevh__tape_operation f, int a, int b) {
     case NEVH__DIVIDE:
         return nevh__graph_multiply(g, a, invert(g, b));
     case NEVH__POWER:
-        return power(g, a, b);
+        return graph_power(g, a, b);
     case NEVH__NEGATE:
         return nevh__graph_scale(g, -1, a);
     default:
         return known->as           ? nevh__graph_build(g, known->as, a, b)
                : known->arity == 2 ? call_of_two(g, f, a, b)
-                                   : call(g, f, a);
+                                   : graph_call(g, f, a);
     }
 }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int compare(const void *a, const void *b) {
+static int schedule_compare(const void *a, const void *b) {
     const nevh__work_item *x = *(const nevh__work_item *const *)a,
                           *y = *(const nevh__work_item *const *)b;
 #define BY(what)                                                               \
@@ -24,7 +24,8 @@ static int compare(const void *a, const void *b) {
 /* Instances of one operation that are a batch of their own. */
 enum { MANY = 8 };
 
-static size_t alike(nevh__work_item *const *of, size_t from, size_t count) {
+static size_t schedule_alike(nevh__work_item *const *of, size_t from,
+                             size_t count) {
     size_t i = from + 1;
     while (i < count && of[i]->level == of[from]->level &&
            of[i]->kind == of[from]->kind && of[i]->arity == of[from]->arity &&
@@ -35,10 +36,10 @@ static size_t alike(nevh__work_item *const *of, size_t from, size_t count) {
 
 static size_t batch_size(nevh__work_item *const *of, size_t from,
                          size_t count) {
-    size_t all = alike(of, from, count);
+    size_t all = schedule_alike(of, from, count);
     while (all < MANY && from + all < count) {
         const nevh__work_item *x = of[from], *y = of[from + all];
-        size_t more = alike(of, from + all, count);
+        size_t more = schedule_alike(of, from + all, count);
         if (x->level != y->level || x->kind != y->kind ||
             x->arity != y->arity || x->function != y->function || more >= MANY)
             break;
@@ -93,7 +94,7 @@ static void number_values(writer *w) {
     r->used[1] = w->lanes[1];
 }
 
-static bool allocate(writer *w) {
+static bool schedule_allocate(writer *w) {
     nevh__recurrence *r = w->r;
     r->batches = nevh__array(w->count, sizeof *r->batches);
     r->index = nevh__array(w->index, sizeof *r->index);
@@ -104,7 +105,7 @@ static bool allocate(writer *w) {
     return r->batches && r->index && r->numbers && r->lane_a && r->slope;
 }
 
-static uint32_t value_of(const writer *w, int at) {
+static uint32_t schedule_value_of(const writer *w, int at) {
     return w->s->items[at].value;
 }
 
@@ -113,11 +114,11 @@ static uint32_t lanes_for(writer *w, size_t from, size_t count, bool weighted) {
     w->fill[!weighted] += count;
     for (size_t i = 0; i < count; i++) {
         const nevh__work_item *x = w->order[from + i];
-        uint32_t a = value_of(w, x->operand[0]), b = x->value;
+        uint32_t a = schedule_value_of(w, x->operand[0]), b = x->value;
         if (x->kind == NEVH__BATCH_MULTIPLY)
-            b = value_of(w, x->operand[1]);
+            b = schedule_value_of(w, x->operand[1]);
         if (x->kind == NEVH__BATCH_CALL)
-            b = value_of(w, x->slope);
+            b = schedule_value_of(w, x->slope);
         w->r->lane_a[first + i] = x->kind == NEVH__BATCH_ROOT ? b : a;
         w->r->lane_b[first + i] = b;
     }
@@ -125,11 +126,11 @@ static uint32_t lanes_for(writer *w, size_t from, size_t count, bool weighted) {
 }
 
 static void write_operand(writer *w, nevh__batch *b, size_t from, int which) {
-    uint32_t first = value_of(w, w->order[from]->operand[which]);
+    uint32_t first = schedule_value_of(w, w->order[from]->operand[which]);
     uint32_t *to = w->r->index + w->index;
     b->together[which] = true;
     for (size_t i = 0; i < b->count; i++) {
-        to[i] = value_of(w, w->order[from + i]->operand[which]);
+        to[i] = schedule_value_of(w, w->order[from + i]->operand[which]);
         if (to[i] != first + i)
             b->together[which] = false;
     }
@@ -168,7 +169,7 @@ static void write_slopes(writer *w, const int slope[]) {
     for (size_t k = 0; k < 2 * r->n; k++) {
         nevh__wide factor = 1;
         int node = nevh__schedule_peel(w->s->g, slope[k], &factor);
-        r->slope[k] = value_of(w, w->s->item_of[node]);
+        r->slope[k] = schedule_value_of(w, w->s->item_of[node]);
         r->numbers[r->n_numbers++] = factor;
     }
 }
@@ -195,7 +196,7 @@ static bool write_edges(writer *w) {
     size_t n = r->n_watched = r->n_edges = made ? g->n_edges : 0;
     for (size_t i = 0; i < n; i++) {
         const nevh__graph_edge *e = &g->edges[i];
-        r->watched[i] = value_of(w, w->s->item_of[e->node]);
+        r->watched[i] = schedule_value_of(w, w->s->item_of[e->node]);
         r->edges[i] = (nevh__edge){.strict = e->strict || root[e->node],
                                    .steep = e->steep,
                                    .function = e->function,
@@ -204,13 +205,14 @@ static bool write_edges(writer *w) {
         if (e->also < 0)
             continue;
         r->edges[i].also = (uint32_t)r->n_watched;
-        r->watched[r->n_watched++] = value_of(w, w->s->item_of[e->also]);
+        r->watched[r->n_watched++] =
+            schedule_value_of(w, w->s->item_of[e->also]);
     }
     free(root);
     return made;
 }
 
-static bool write(writer *w, const int slope[]) {
+static bool schedule_write(writer *w, const int slope[]) {
     nevh__scheduler *s = w->s;
     w->order = nevh__array(s->count, sizeof *w->order);
     if (!w->order)
@@ -218,9 +220,9 @@ static bool write(writer *w, const int slope[]) {
     for (size_t i = 0; i < s->count; i++)
         if (s->items[i].kind >= 0)
             w->order[w->count++] = &s->items[i];
-    qsort(w->order, w->count, sizeof *w->order, compare);
+    qsort(w->order, w->count, sizeof *w->order, schedule_compare);
     number_values(w);
-    if (!allocate(w))
+    if (!schedule_allocate(w))
         return false;
     w->index = 0;
     w->r->n_numbers = 0;
@@ -241,7 +243,7 @@ static bool schedule(nevh__recurrence *r, const nevh__graph *g,
     nevh__scheduler s = {.g = g, .n = r->n};
     writer w = {.s = &s, .r = r};
     nevh__schedule_items(&s, slope);
-    bool fine = !s.failed && write(&w, slope);
+    bool fine = !s.failed && schedule_write(&w, slope);
     free(s.uses);
     free(s.apart);
     free(s.item_of);

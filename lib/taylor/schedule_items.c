@@ -102,7 +102,7 @@ static void add_summand(nevh__scheduler *s, int leaf, nevh__wide factor) {
 }
 
 /* The summands of a node, in order. */
-static void collect(nevh__scheduler *s, int node) {
+static void schedule_items_collect(nevh__scheduler *s, int node) {
     const nevh__graph_node *x = &s->g->nodes[node];
     nevh__wide factor = x->kind == NEVH__GRAPH_SCALE ? x->number : 1;
     s->depth = s->summands = 0;
@@ -177,7 +177,7 @@ static int item_for(nevh__scheduler *s, const nevh__graph_node *n, int node) {
     if (x.kind < 0)
         return add_item(s, x);
     if (is_sum(n)) {
-        collect(s, node);
+        schedule_items_collect(s, node);
         x.number[0] = 0;
         return s->failed ? 0 : part_of_sum(s, &x, 0, s->summands);
     }

@@ -29,11 +29,11 @@ struct nevh_ledger {
                                       kernel has something to tell */
 };
 
-static int out_of_memory(nevh_work *w) {
+static int ledger_out_of_memory(nevh_work *w) {
     return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
 }
 
-static int allocate(nevh_work *w, struct nevh_ledger *l) {
+static int ledger_allocate(nevh_work *w, struct nevh_ledger *l) {
     size_t width = w->width, size = w->size;
     l->t = nevh__array(width, sizeof(double));
     l->rate = nevh__array(width, sizeof(double));
@@ -46,13 +46,13 @@ static int allocate(nevh_work *w, struct nevh_ledger *l) {
     l->steps = nevh__array(w->system->n_terms, sizeof *l->steps);
     bool all = l->t && l->rate && l->h && l->pending && l->roundoff &&
                l->slope && l->q && l->p && l->steps;
-    return all ? NEVH_OK : out_of_memory(w);
+    return all ? NEVH_OK : ledger_out_of_memory(w);
 }
 
-static int plan_field(nevh_work *w, struct nevh_ledger *l) {
+static int ledger_plan_field(nevh_work *w, struct nevh_ledger *l) {
     l->field = nevh_field_new(w->system, w->options);
     if (!l->field)
-        return out_of_memory(w);
+        return ledger_out_of_memory(w);
     int status = l->field->report.status;
     if (!status && l->driven)
         status = nevh__field_plan_time(l->field, w->options, l->steps);
@@ -75,11 +75,11 @@ int nevh__ledger_plan(nevh_work *w, bool friction) {
             w->integrator->name, driven ? "H reads t" : "there is friction");
     struct nevh_ledger *l = w->ledger = nevh__array(1, sizeof *l);
     if (!l)
-        return out_of_memory(w);
+        return ledger_out_of_memory(w);
     l->driven = driven;
     l->by_kernel = driven || w->friction;
-    int status = allocate(w, l);
-    return status ? status : plan_field(w, l);
+    int status = ledger_allocate(w, l);
+    return status ? status : ledger_plan_field(w, l);
 }
 
 void nevh__ledger_free(struct nevh_ledger *l) {
@@ -112,13 +112,13 @@ void nevh__ledger_open(nevh_work *w, const double q[], const double p[]) {
 }
 
 /* sum + roundoff += x, whichever is larger. */
-static void add(double *sum, double *roundoff, double x) {
+static void ledger_add(double *sum, double *roundoff, double x) {
     double next = *sum + x;
     *roundoff += nevh__roundoff(next, *sum, x);
     *sum = next;
 }
 
-static int fail(nevh_work *w, int status) {
+static int ledger_fail(nevh_work *w, int status) {
     if (status)
         nevh_work_fail(w, status, "%s", nevh_field_message(w->ledger->field));
     return status;
@@ -133,8 +133,8 @@ int nevh__ledger_add(nevh_work *w, double sign, double t, const double q[],
         l->t[lane] = t;
     int status = nevh_field_value(l->field, w->width, l->t, q, p, l->h);
     for (size_t lane = 0; !status && lane < w->width; lane++)
-        add(&l->pending[lane], &l->roundoff[lane], sign * l->h[lane]);
-    return fail(w, status);
+        ledger_add(&l->pending[lane], &l->roundoff[lane], sign * l->h[lane]);
+    return ledger_fail(w, status);
 }
 
 /* Adds the part of a term T(t, p) + V(t, q) that is one function: dV/dt + dT/dt(p0)
@@ -159,8 +159,9 @@ static int add_half(nevh_work *w, size_t i, bool kick, const double t[],
 }
 
 /* Adds the share of `parts` in dH/dt of a term. */
-static int add_term(nevh_work *w, size_t i, unsigned parts, const double t[],
-                    const double q[], const double p[]) {
+static int ledger_add_term(nevh_work *w, size_t i, unsigned parts,
+                           const double t[], const double q[],
+                           const double p[]) {
     struct nevh_ledger *l = w->ledger;
     const nevh__planned *term = &l->field->terms[i];
     const unsigned both = NEVH_OF_Q | NEVH_OF_P;
@@ -174,8 +175,8 @@ static int add_term(nevh_work *w, size_t i, unsigned parts, const double t[],
                                   l->rate);
 }
 
-static int add_friction(nevh_work *w, const double t[], const double q[],
-                        const double p[]) {
+static int ledger_add_friction(nevh_work *w, const double t[], const double q[],
+                               const double p[]) {
     struct nevh_ledger *l = w->ledger;
     int status =
         nevh_field_gradient(l->field, w->width, t, q, p, NULL, l->slope);
@@ -195,12 +196,13 @@ int nevh__ledger_account(nevh_work *w, unsigned parts, double weight,
     for (size_t lane = 0; lane < w->width; lane++)
         l->rate[lane] = 0;
     for (size_t i = 0; !status && i < l->field->n_terms; i++)
-        status = add_term(w, i, parts, t, q, p);
+        status = ledger_add_term(w, i, parts, t, q, p);
     if (!status && w->friction && parts & NEVH_OF_P)
-        status = add_friction(w, t, q, p);
+        status = ledger_add_friction(w, t, q, p);
     for (size_t lane = 0; !status && lane < w->width; lane++)
-        add(&l->pending[lane], &l->roundoff[lane], weight * l->rate[lane]);
-    return fail(w, status);
+        ledger_add(&l->pending[lane], &l->roundoff[lane],
+                   weight * l->rate[lane]);
+    return ledger_fail(w, status);
 }
 
 void nevh__ledger_close(const nevh_work *w, double total[]) {
@@ -212,7 +214,7 @@ void nevh__ledger_close(const nevh_work *w, double total[]) {
                                       fabs(l->drifted - w->elapsed) <= slack);
     for (size_t lane = 0; lane < w->width; lane++) {
         double *roundoff = total + w->width + lane;
-        add(&total[lane], roundoff, complete ? l->pending[lane] : NAN);
+        ledger_add(&total[lane], roundoff, complete ? l->pending[lane] : NAN);
         *roundoff += l->roundoff[lane];
     }
 }

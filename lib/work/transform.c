@@ -57,7 +57,7 @@ int nevh__transform_field(nevh_work *w, nevh_field **field) {
                                      : NEVH_OK;
 }
 
-static int refuse(nevh_work *w, const char *why) {
+static int transform_refuse(nevh_work *w, const char *why) {
     return nevh_work_fail(w, NEVH_ESTRUCT,
                           "%s cannot take a time transform: %s; midpoint, "
                           "gauss4 and the other schemes for any H can",
@@ -66,7 +66,7 @@ static int refuse(nevh_work *w, const char *why) {
 
 /* Refuses an H that depends on time.  Declarations do not decide: H as one function
    may read t. */
-static int check_time(nevh_work *w) {
+static int transform_check_time(nevh_work *w) {
     nevh_probe *b = nevh_probe_new(w->system, w->options);
     nevh_finding f = nevh_probe_finding(b, NEVH_IS_AUTONOMOUS);
     int status = nevh_probe_status(b);
@@ -82,23 +82,26 @@ static int check_time(nevh_work *w) {
     return status;
 }
 
-static int check(nevh_work *w) {
+static int transform_check(nevh_work *w) {
     const nevh_integrator *scheme = w->integrator;
     if (scheme->needs)
-        return refuse(w, "it needs H = T(p) + V(q), and s(q, p) (H - H0) is "
-                         "no such sum");
+        return transform_refuse(
+            w, "it needs H = T(p) + V(q), and s(q, p) (H - H0) is "
+               "no such sum");
     if (scheme->kernel->opaque || scheme->kernel->own_slopes)
-        return refuse(w, "it takes its gradients on its own");
+        return transform_refuse(w, "it takes its gradients on its own");
     if (scheme->preserves_energy == NEVH_YES)
-        return refuse(w, "it is H that it preserves, not s (H - H0)");
+        return transform_refuse(w, "it is H that it preserves, not s (H - H0)");
     if (scheme->symplectic == NEVH_EXTENDED)
-        return refuse(w, "its binding is chosen for H, not for s (H - H0)");
-    return nevh_system_traits(w->system) & NEVH_AUTONOMOUS ? NEVH_OK
-                                                           : check_time(w);
+        return transform_refuse(
+            w, "its binding is chosen for H, not for s (H - H0)");
+    return nevh_system_traits(w->system) & NEVH_AUTONOMOUS
+               ? NEVH_OK
+               : transform_check_time(w);
 }
 
 int nevh__transform_plan(nevh_work *w) {
-    int status = check(w);
+    int status = transform_check(w);
     if (status)
         return status;
     nevh__transform *f = w->transform = nevh__array(1, sizeof *f);

@@ -137,8 +137,8 @@ int nevh__work_noise(nevh_work *w, double t, const double q[], const double p[],
 }
 
 /* The sum of x - x over the new values: 0 if all are finite, NaN otherwise. */
-static double check(size_t count, const double y[], const double d[],
-                    const double compensation[]) {
+static double work_check(size_t count, const double y[], const double d[],
+                         const double compensation[]) {
     double sum = 0;
     for (size_t i = 0; i < count; i++) {
         double next = y[i] + (d[i] + compensation[i]);
@@ -149,8 +149,8 @@ static double check(size_t count, const double y[], const double d[],
 
 /* The rounding error of d + compensation is dropped: it is below the last bit of
    the compensation.  The sum with y is exact in two parts, whichever is larger. */
-static void add(size_t count, double y[], const double d[],
-                double compensation[]) {
+static void work_add(size_t count, double y[], const double d[],
+                     double compensation[]) {
     for (size_t i = 0; i < count; i++) {
         double x = d[i] + compensation[i], next = y[i] + x;
         compensation[i] = nevh__roundoff(next, y[i], x);
@@ -161,14 +161,14 @@ static void add(size_t count, double y[], const double d[],
 int nevh_work_commit(nevh_work *w, size_t count, double q[], const double dq[],
                      double compensation_q[], double p[], const double dp[],
                      double compensation_p[]) {
-    if (check(count, q, dq, compensation_q) +
-            check(count, p, dp, compensation_p) !=
+    if (work_check(count, q, dq, compensation_q) +
+            work_check(count, p, dp, compensation_p) !=
         0)
         return nevh_work_fail(w, NEVH_EDOM,
                               "the new state is not a finite number: take a "
                               "smaller step");
-    add(count, q, dq, compensation_q);
-    add(count, p, dp, compensation_p);
+    work_add(count, q, dq, compensation_q);
+    work_add(count, p, dp, compensation_p);
     return NEVH_OK;
 }
 

@@ -156,8 +156,8 @@ static void fill_in(const nevh_ensemble *e, const nevh__chaos_member *found,
     }
 }
 
-static int hand_on(nevh_ensemble *e, uint64_t member,
-                   const nevh__chaos_member *found, double values[]) {
+static int chaotic_hand_on(nevh_ensemble *e, uint64_t member,
+                           const nevh__chaos_member *found, double values[]) {
     for (size_t i = 0; found->status && i < e->columns; i++)
         values[i] = NAN;
     if (!found->status)
@@ -185,7 +185,7 @@ static bool next_waiting(void *ensemble, uint64_t *at, double q[], double p[],
 static int done_waiting(void *ensemble, const nevh__chaos_member *found) {
     nevh_ensemble *e = ensemble;
     const waiting *w = &e->chaotic->queue[found->member];
-    return hand_on(e, w->member, found, w->values);
+    return chaotic_hand_on(e, w->member, found, w->values);
 }
 
 static void run_jobs(nevh_ensemble *e, nevh__chaos_jobs jobs) {
@@ -233,7 +233,7 @@ static bool next_alone(void *ensemble, uint64_t *member, double q[], double p[],
 
 static int done_alone(void *ensemble, const nevh__chaos_member *found) {
     nevh_ensemble *e = ensemble;
-    return hand_on(e, found->member, found, e->result);
+    return chaotic_hand_on(e, found->member, found, e->result);
 }
 
 bool nevh__chaotic_run(nevh_ensemble *e) {

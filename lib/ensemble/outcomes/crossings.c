@@ -22,7 +22,7 @@ typedef struct {
     size_t count;
 } crossed;
 
-static void begin(const nevh__observation *at, void *record) {
+static void crossings_begin(const nevh__observation *at, void *record) {
     (void)at;
     *(crossed *)record = (crossed){0};
 }
@@ -48,7 +48,7 @@ const nevh__outcome_type nevh__outcome_crossings = {
              .help = "how often a section is crossed"},
     .branches = true,
     .size = sizeof(crossed),
-    .begin = begin,
+    .begin = crossings_begin,
     .end = end_crossings,
 };
 const nevh__outcome_type nevh__outcome_period = {
@@ -58,7 +58,7 @@ const nevh__outcome_type nevh__outcome_period = {
              .help = "the mean time between crossings of a section"},
     .branches = true,
     .size = sizeof(crossed),
-    .begin = begin,
+    .begin = crossings_begin,
     .end = end_period,
 };
 
@@ -173,9 +173,9 @@ static void find_flow(nevh_ensemble *e, const double t[], const double q[],
 }
 
 /* Finds the derivatives of the values in all lanes. */
-static void find_slopes(nevh_ensemble *e, const double t[], const double q[],
-                        const double p[], const double values[],
-                        double slopes[]) {
+static void crossings_find_slopes(nevh_ensemble *e, const double t[],
+                                  const double q[], const double p[],
+                                  const double values[], double slopes[]) {
     nevh__crossing_lanes *c = e->crossing_lanes;
     find_flow(e, t, q, p);
     for (size_t lane = 0; lane < e->stride; lane++) {
@@ -238,7 +238,7 @@ static void load_states(nevh_ensemble *e, size_t lane) {
 }
 
 /* True if all values are finite; otherwise the orbit fails, as it does alone. */
-static bool all_finite(nevh_ensemble *e, size_t lane) {
+static bool crossings_all_finite(nevh_ensemble *e, size_t lane) {
     nevh_sections *x = e->sections;
     double value;
     for (size_t i = 0; i < x->count; i++)
@@ -280,7 +280,8 @@ static void keep_slopes(nevh_ensemble *e, size_t lane, const double from[]) {
 /* Slopes where the first step began, of lanes that took it. */
 static void begin_slopes(nevh_ensemble *e) {
     double *slope = e->crossing_lanes->slope_after;
-    find_slopes(e, e->ago1.t, e->ago1.q, e->ago1.p, e->ago1.value, slope);
+    crossings_find_slopes(e, e->ago1.t, e->ago1.q, e->ago1.p, e->ago1.value,
+                          slope);
     for (size_t lane = 0; lane < e->width; lane++)
         if (e->lanes[lane].look && e->lanes[lane].step == 1)
             keep_slopes(e, lane, slope);
@@ -302,10 +303,11 @@ void nevh__ensemble_look_at_crossings(nevh_ensemble *e) {
     if (first)
         begin_slopes(e);
     if (any)
-        find_slopes(e, e->now.t, e->q, e->p, e->now.value, c->slope_after);
+        crossings_find_slopes(e, e->now.t, e->q, e->p, e->now.value,
+                              c->slope_after);
     for (size_t lane = 0; lane < e->width; lane++) {
         const nevh__lane *l = &e->lanes[lane];
-        if (!l->look || l->over || !all_finite(e, lane) || !l->step)
+        if (!l->look || l->over || !crossings_all_finite(e, lane) || !l->step)
             continue;
         look_at_lane(e, lane);
         keep_slopes(e, lane, c->slope_after);

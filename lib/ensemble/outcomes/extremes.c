@@ -3,7 +3,7 @@
 #include "ensemble/outcomes/outcome_private.h"
 #include <math.h>
 
-static void begin(const nevh__observation *at, void *record) {
+static void extremes_begin(const nevh__observation *at, void *record) {
     *(double *)record = at->value;
 }
 
@@ -27,8 +27,8 @@ static void step_max(const nevh__observation *at, void *record) {
     *(double *)record = most;
 }
 
-static void end(const nevh__observation *at, const void *record,
-                double result[]) {
+static void extremes_end(const nevh__observation *at, const void *record,
+                         double result[]) {
     (void)at;
     *result = *(const double *)record;
 }
@@ -41,9 +41,9 @@ const nevh__outcome_type nevh__outcome_min = {
                      "each step"},
     .of_values = true,
     .size = sizeof(double),
-    .begin = begin,
+    .begin = extremes_begin,
     .step = step_min,
-    .end = end,
+    .end = extremes_end,
 };
 const nevh__outcome_type nevh__outcome_max = {
     .info = {.name = "max",
@@ -53,7 +53,7 @@ const nevh__outcome_type nevh__outcome_max = {
                      "each step"},
     .of_values = true,
     .size = sizeof(double),
-    .begin = begin,
+    .begin = extremes_begin,
     .step = step_max,
-    .end = end,
+    .end = extremes_end,
 };

@@ -21,7 +21,7 @@ typedef struct {
     nevh__report failed;
 } search;
 
-static double sample(search *s, double part) {
+static double first_sample(search *s, double part) {
     nevh_ensemble *e = s->e;
     const nevh__snapshot *from = s->from;
     nevh__lane_to_narrow(e, from->q, from->p, from->memory, s->lane);
@@ -35,20 +35,20 @@ static double sample(search *s, double part) {
 }
 
 /* Finite whatever happens, since GSL aborts otherwise; the ends are known. */
-static double height(double part, void *data) {
+static double first_height(double part, void *data) {
     search *s = data;
     if (part == s->a || s->failed.status)
         return s->at_a;
     if (part == s->b)
         return s->at_b;
-    double value = sample(s, part);
+    double value = first_sample(s, part);
     return isfinite(value) ? value : s->at_a;
 }
 
 /* Between part a, where the value is not above 0, and b, where it is. */
-static double find(search *s) {
+static double first_find(search *s) {
     gsl_root_fsolver *root = s->e->root;
-    gsl_function f = {height, s};
+    gsl_function f = {first_height, s};
     if (!(s->at_a <= 0) || !isfinite(s->at_a))
         s->at_a = -1; /* it was not a number: only its side counts */
     if (!isfinite(s->at_b))
@@ -66,7 +66,7 @@ static double find(search *s) {
     }
     if (part == 0)
         return s->from->t[s->lane];
-    sample(s, part);
+    first_sample(s, part);
     return s->t;
 }
 
@@ -79,19 +79,20 @@ static double result(search *s, double t) {
 
 /* The time at which the value first is above 0 between the snapshot and `until`, a
    part of the step from it, where it is above 0. */
-static double locate(nevh_ensemble *e, const nevh__snapshot *from, size_t lane,
-                     size_t o, double until, double value_until) {
+static double first_locate(nevh_ensemble *e, const nevh__snapshot *from,
+                           size_t lane, size_t o, double until,
+                           double value_until) {
     search s = {.e = e, .from = from, .lane = lane, .outcome = o};
     s.at_a = from->value[o * e->stride + lane];
     s.b = until;
     s.at_b = value_until;
-    return result(&s, find(&s));
+    return result(&s, first_find(&s));
 }
 
 /* The maximum of the parabola through three points, and its place; false if it has
    none. */
-static bool turn(const double t[3], const double g[3], double *at,
-                 double *most) {
+static bool first_turn(const double t[3], const double g[3], double *at,
+                       double *most) {
     double left = t[1] - t[0], right = t[2] - t[1];
     double up = (g[1] - g[0]) / left, down = (g[2] - g[1]) / right;
     double curve = (down - up) / (left + right);
@@ -115,12 +116,12 @@ static bool find_maximum(search *s, double t[3], double g[3], double *at,
                          double *value) {
     for (int i = 0; i < MOST_DIGS; i++) {
         double top;
-        if (!turn(t, g, at, &top) || !(g[1] + doubt * (top - g[1]) > 0))
+        if (!first_turn(t, g, at, &top) || !(g[1] + doubt * (top - g[1]) > 0))
             return false;
         *at = fmin(fmax(*at, t[0] + inside), t[2] - inside);
         if (fabs(*at - t[1]) < inside)
             *at = t[1] + (t[2] - t[1] > t[1] - t[0] ? inside : -inside);
-        *value = sample(s, part_of(s, *at));
+        *value = first_sample(s, part_of(s, *at));
         if (s->failed.status || !isfinite(*value) || *value > 0)
             return !s->failed.status && *value > 0;
         size_t end = (*at > t[1]) == (*value > g[1]) ? 0 : 2;
@@ -143,7 +144,7 @@ static bool find_maximum(search *s, double t[3], double g[3], double *at,
 static bool may_graze(const double g[3], double ratio) {
     double t[3] = {0, 1, 1 + ratio}, at, top;
     return g[1] >= g[0] && g[1] >= g[2] && g[0] > -INFINITY &&
-           g[2] > -INFINITY && turn(t, g, &at, &top) &&
+           g[2] > -INFINITY && first_turn(t, g, &at, &top) &&
            g[1] + doubt * (top - g[1]) > 0;
 }
 
@@ -162,10 +163,10 @@ static double graze(nevh_ensemble *e, size_t lane, size_t o) {
         return NAN;
     }
     double part = part_of(&s, at);
-    return locate(e, s.from, lane, o, part, value);
+    return first_locate(e, s.from, lane, o, part, value);
 }
 
-static void begin(const nevh__observation *at, void *record) {
+static void first_begin(const nevh__observation *at, void *record) {
     *(double *)record = at->value > 0 ? at->t : NAN;
 }
 
@@ -179,7 +180,7 @@ static void step(const nevh__observation *at, void *record) {
         return;
     if (at->value > 0)
         *(double *)record =
-            locate(e, &e->ago1, at->lane, at->outcome, 1, at->value);
+            first_locate(e, &e->ago1, at->lane, at->outcome, 1, at->value);
     else if (at->step > 1)
         *(double *)record = graze(e, at->lane, at->outcome);
 }
@@ -199,8 +200,8 @@ static size_t quiet(const nevh__observation *at, const void *record) {
     return i;
 }
 
-static void end(const nevh__observation *at, const void *record,
-                double result[]) {
+static void first_end(const nevh__observation *at, const void *record,
+                      double result[]) {
     (void)at;
     *result = *(const double *)record;
 }
@@ -212,9 +213,9 @@ const nevh__outcome_type nevh__outcome_first = {
              .help = "the first time at which a condition holds"},
     .branches = true,
     .size = sizeof(double),
-    .begin = begin,
+    .begin = first_begin,
     .step = step,
     .quiet = quiet,
     .known = known,
-    .end = end,
+    .end = first_end,
 };

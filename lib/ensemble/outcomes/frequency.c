@@ -10,7 +10,8 @@ enum { MOST_SAMPLES = 1 << 12 }; /* of an orbit */
 
 typedef nevh_spectral_samples *samples;
 
-static int plan(nevh_ensemble *e, size_t outcome, const nevh_options *o) {
+static int frequency_plan(nevh_ensemble *e, size_t outcome,
+                          const nevh_options *o) {
     samples *records = nevh__record_of(e, outcome, 0);
     if (e->options.integrator->own_time || o->transform)
         return nevh__fail(&e->report, NEVH_EINVAL,
@@ -24,25 +25,25 @@ static int plan(nevh_ensemble *e, size_t outcome, const nevh_options *o) {
     return NEVH_OK;
 }
 
-static void clear(void *record) {
+static void frequency_clear(void *record) {
     nevh_spectral_samples_free(*(samples *)record);
 }
 
-static void step(const nevh__observation *at, void *record) {
+static void frequency_step(const nevh__observation *at, void *record) {
     for (size_t i = 0; i < at->count; i++)
         nevh_spectral_samples_take(
             *(samples *)record, nevh__observed_step(at, i),
             nevh__observed_t(at, i), nevh__observed(at, i));
 }
 
-static void begin(const nevh__observation *at, void *record) {
+static void frequency_begin(const nevh__observation *at, void *record) {
     nevh_spectral_samples_restart(*(samples *)record);
-    step(at, record);
+    frequency_step(at, record);
 }
 
 /* NAN where there is no line, or too few samples, or less than a turn. */
-static void end(const nevh__observation *at, const void *record,
-                double result[]) {
+static void frequency_end(const nevh__observation *at, const void *record,
+                          double result[]) {
     samples kept = *(const samples *)record;
     size_t count;
     double h;
@@ -61,9 +62,9 @@ const nevh__outcome_type nevh__outcome_frequency = {
                      "formula"},
     .of_turns = true,
     .size = sizeof(samples),
-    .plan = plan,
-    .clear = clear,
-    .begin = begin,
-    .step = step,
-    .end = end,
+    .plan = frequency_plan,
+    .clear = frequency_clear,
+    .begin = frequency_begin,
+    .step = frequency_step,
+    .end = frequency_end,
 };

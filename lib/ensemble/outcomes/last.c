@@ -2,8 +2,8 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "ensemble/outcomes/outcome_private.h"
 
-static void end(const nevh__observation *at, const void *record,
-                double result[]) {
+static void last_end(const nevh__observation *at, const void *record,
+                     double result[]) {
     (void)record;
     *result = at->value;
 }
@@ -14,5 +14,5 @@ const nevh__outcome_type nevh__outcome_last = {
              .unit = NEVH_UNIT_OF_FORMULA,
              .help = "a formula at the end"},
     .of_values = true,
-    .end = end,
+    .end = last_end,
 };

@@ -7,12 +7,12 @@ typedef struct {
     double sum, roundoff; /* sum + roundoff is the integral */
 } integral;
 
-static void begin(const nevh__observation *at, void *record) {
+static void mean_begin(const nevh__observation *at, void *record) {
     (void)at;
     *(integral *)record = (integral){0};
 }
 
-static void step(const nevh__observation *at, void *record) {
+static void mean_step(const nevh__observation *at, void *record) {
     integral x = *(integral *)record;
     double t = at->t_before, value = at->value_before;
     for (size_t i = 0; i < at->count; i++) {
@@ -27,8 +27,8 @@ static void step(const nevh__observation *at, void *record) {
     *(integral *)record = x;
 }
 
-static void end(const nevh__observation *at, const void *record,
-                double result[]) {
+static void mean_end(const nevh__observation *at, const void *record,
+                     double result[]) {
     const integral *x = record;
     double span = at->t - at->t_start;
     *result = span != 0 ? (x->sum + x->roundoff) / span : at->value;
@@ -41,7 +41,7 @@ const nevh__outcome_type nevh__outcome_mean = {
              .help = "the mean of a formula over time"},
     .of_values = true,
     .size = sizeof(integral),
-    .begin = begin,
-    .step = step,
-    .end = end,
+    .begin = mean_begin,
+    .step = mean_step,
+    .end = mean_end,
 };

@@ -25,13 +25,13 @@ static void choose_scale(integral *x, double size) {
     x->scale = scale;
 }
 
-static void begin(const nevh__observation *at, void *record) {
+static void rms_begin(const nevh__observation *at, void *record) {
     integral *x = record;
     *x = (integral){.scale = 1};
     choose_scale(x, fabs(at->value));
 }
 
-static void step(const nevh__observation *at, void *record) {
+static void rms_step(const nevh__observation *at, void *record) {
     integral *x = record;
     double t = at->t_before, value = at->value_before;
     for (size_t i = 0; i < at->count; i++) {
@@ -47,8 +47,8 @@ static void step(const nevh__observation *at, void *record) {
     }
 }
 
-static void end(const nevh__observation *at, const void *record,
-                double result[]) {
+static void rms_end(const nevh__observation *at, const void *record,
+                    double result[]) {
     const integral *x = record;
     double span = at->t - at->t_start;
     *result = span != 0 ? sqrt((x->sum + x->roundoff) / span) / x->scale
@@ -62,7 +62,7 @@ const nevh__outcome_type nevh__outcome_rms = {
              .help = "the root mean square of a formula over time"},
     .of_values = true,
     .size = sizeof(integral),
-    .begin = begin,
-    .step = step,
-    .end = end,
+    .begin = rms_begin,
+    .step = rms_step,
+    .end = rms_end,
 };
