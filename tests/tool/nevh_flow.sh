@@ -167,6 +167,13 @@ says 'pendulum: the orbit fails, so that no shape follows from it: '
 # names where.
 exits 0 flow pendulum --integrators euler --dt 0.1 --t-end 1
 has '^shape: cat\(phi = 2, p_phi = 0, 0\.4, 1\.0[0-9]\)'
+# An angle that goes round has a shape of a part of a turn, and shapes at the cut of an
+# angle are drawn beside each other.
+exits 0 flow pendulum-rotating --integrators verlet --t-end 5
+has '^shape: cat\(phi = 0, p_phi = 8, 0\.628, 0\.2[0-9]+\)'
+exits 0 flow kapitza --integrators verlet --plot $work/flow.svg
+grep -q '>3\.10*<' $work/flow.svg && ! grep -q '>-[2-4][.0-9]*<' $work/flow.svg ||
+    fails "draws shapes on both sides of the cut"
 printf '%s\n' '[coordinates]' 'x = 2' '[effects]' 'kinetic = p_x^2/2' \
     'hill = x^2/2 - x^4/4' '[run]' 'dt = 0.1' 't_end = 50' >$work/hill.nevh
 exits 1 run $work/hill.nevh --integrators verlet

@@ -7,8 +7,9 @@
 
 enum { MOST_SHAPES = 6 };
 
+/* What is drawn; shapes are moved by whole periods next to the middle. */
 typedef struct {
-    double low_x, high_x, low_y, high_y;
+    double middle, low_x, high_x, low_y, high_y;
 } window;
 
 static void widen(window *w, double x, double y) {
@@ -23,22 +24,27 @@ static size_t plane(const flow_job *j) {
     return j->shape.kind == FLOW_LOOP ? 0 : j->shape.k;
 }
 
-/* A whole number of periods that brings the middle of a shape next to 0. */
-static double shift_of(const flow_job *j, const nevh_loop *l, size_t time) {
-    double period = nevh_scene_period(j->plan.scene, plane(j));
+/* NAN: there is no shape. */
+static double middle_of(const flow_job *j, const nevh_loop *l, size_t time) {
     double sum = 0, *q = tool_allocate(j->plan.n, sizeof *q);
     size_t count = 0;
     for (; nevh_loop_shape(l, time, count, q, NULL); count++)
         sum += q[plane(j)];
     free(q);
-    return period > 0 && count
-               ? period * floor(sum / (double)count / period + 0.5)
-               : 0;
+    return sum / (double)count;
+}
+
+/* A whole number of periods that brings a shape next to the window's middle. */
+static double shift_of(const flow_job *j, const nevh_loop *l, size_t time,
+                       const window *w) {
+    double period = nevh_scene_period(j->plan.scene, plane(j));
+    double off = middle_of(j, l, time) - w->middle;
+    return period > 0 && !isnan(off) ? period * floor(off / period + 0.5) : 0;
 }
 
 /* The length of the outline over the diagonal of what it covers: of a circle 2.2. */
 static double stretch_of(const flow_job *j, const nevh_loop *l, size_t time) {
-    window w = {INFINITY, -INFINITY, INFINITY, -INFINITY};
+    window w = {0, INFINITY, -INFINITY, INFINITY, -INFINITY};
     double *q = tool_allocate(2 * j->plan.n, sizeof *q), *p = q + j->plan.n;
     for (size_t k = 0; nevh_loop_shape(l, time, k, q, p); k++)
         widen(&w, q[plane(j)], p[plane(j)]);
@@ -72,9 +78,9 @@ static bool keeps(const flow_job *j, const flow_row *r) {
 
 /* The window holds the shapes of symplectic integrators, if there are any; others
    may leave it. Shapes that are much larger than at first are left out. */
-static window find_window(const flow_job *j) {
+static window find_window_at(const flow_job *j, double middle) {
     static const double large = 4, margin = 0.08;
-    window w = {INFINITY, -INFINITY, INFINITY, -INFINITY};
+    window w = {middle, INFINITY, -INFINITY, INFINITY, -INFINITY};
     double *q = tool_allocate(2 * j->plan.n, sizeof *q), *p = q + j->plan.n;
     bool any = false;
     for (size_t i = 0; i < j->rows; i++)
@@ -87,7 +93,7 @@ static window find_window(const flow_job *j) {
                 if (!is_drawn(j, l, time) ||
                     fabs(at.area / nevh_loop_result(l, 0).area) > large)
                     continue;
-                double shift = shift_of(j, l, time);
+                double shift = shift_of(j, l, time, &w);
                 for (size_t k = 0; nevh_loop_shape(l, time, k, q, p); k++)
                     widen(&w, q[plane(j)] - shift, p[plane(j)]);
             }
@@ -100,6 +106,20 @@ static window find_window(const flow_job *j) {
     return w;
 }
 
+/* About 0, or about the start, where the shapes then are closer together. */
+static window find_window(const flow_job *j) {
+    window w = find_window_at(j, 0);
+    double start = NAN;
+    for (size_t i = 0; i < j->rows && isnan(start); i++)
+        start = middle_of(j, j->row[i].loop, 0);
+    if (!isnan(start)) {
+        window other = find_window_at(j, start);
+        if (other.high_x - other.low_x < 0.99 * (w.high_x - w.low_x))
+            w = other;
+    }
+    return w;
+}
+
 static size_t new_series(plot *to, const flow_row *r, plot_form form) {
     size_t series = plot_series(to, NULL);
     plot_style(to, series, form);
@@ -109,11 +129,11 @@ static size_t new_series(plot *to, const flow_row *r, plot_form form) {
 
 /* Draws the outline, interrupted where neighbouring points are far apart. */
 static void draw_outline(plot *to, const flow_job *j, const nevh_loop *l,
-                         size_t time, size_t series, bool closed,
+                         size_t time, size_t series, double shift,
                          const window *w) {
     static const double far = 0.25; /* of the window */
+    bool closed = j->plan.n == 1;
     size_t count = 0;
-    double shift = shift_of(j, l, time);
     double *q = tool_allocate(2 * j->plan.n, sizeof *q), *p = q + j->plan.n;
     double last_x = NAN, last_y = NAN;
     for (; nevh_loop_shape(l, time, count, q, p); count++) {
@@ -135,7 +155,7 @@ static void draw_outline(plot *to, const flow_job *j, const nevh_loop *l,
 static bool name_time(plot *to, const flow_job *j, const nevh_loop *l,
                       size_t time, const window *w) {
     double *q = tool_allocate(2 * j->plan.n, sizeof *q), *p = q + j->plan.n;
-    double shift = shift_of(j, l, time), right = -INFINITY, up = 0;
+    double shift = shift_of(j, l, time, w), right = -INFINITY, up = 0;
     for (size_t k = 0; nevh_loop_shape(l, time, k, q, p); k++) {
         double x = q[plane(j)] - shift, y = p[plane(j)];
         if (x > right && x >= w->low_x && x <= w->high_x && y >= w->low_y &&
@@ -158,14 +178,13 @@ static bool name_time(plot *to, const flow_job *j, const nevh_loop *l,
 
 static void draw_shape(plot *to, const flow_job *j, const flow_row *r,
                        size_t time, const window *w) {
-    bool filled = j->plan.n == 1;
-    draw_outline(to, j, r->loop, time,
-                 new_series(to, r, filled ? PLOT_FILLED : PLOT_TRAIL), filled,
-                 w);
+    double shift = shift_of(j, r->loop, time, w);
+    plot_form form = j->plan.n == 1 ? PLOT_FILLED : PLOT_TRAIL;
+    draw_outline(to, j, r->loop, time, new_series(to, r, form), shift, w);
     for (int i = 0; i < FLOW_EYES; i++)
         if (r->eye[i])
             draw_outline(to, j, r->eye[i], time, new_series(to, r, PLOT_HOLE),
-                         true, w);
+                         shift, w);
 }
 
 /* The change of the area by the scheme, as far as that is known. */

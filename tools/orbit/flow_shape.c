@@ -378,6 +378,13 @@ static int measure(const plan *p, extent *e) {
     return status;
 }
 
+/* How far coordinate k moves: a turn at most, where it is an angle. */
+static double range_of(const plan *p, const extent *e, size_t k) {
+    double period = nevh_scene_period(p->scene, k),
+           range = e->high[k] - e->low[k];
+    return period > 0 ? fmin(range, period) : range;
+}
+
 /* A cat round the start, a fifth of the orbit in size. */
 static int choose(shape *c) {
     static const double part = 0.1;
@@ -392,7 +399,7 @@ static int choose(shape *c) {
     size_t k = 0;
     bool moved = moves(&e);
     for (; !status && k < p->n; k++) {
-        c->width = part * (e.high[k] - e.low[k]);
+        c->width = part * range_of(p, &e, k);
         c->height = part * (e.high[p->n + k] - e.low[p->n + k]);
         if (c->width > 0 && c->height > 0 && isfinite(c->width * c->height))
             break;
