@@ -45,9 +45,10 @@ NEVH_API extern const nevh_integrator *const nevh_suzuki_umeno8;
 NEVH_API extern const nevh_integrator *const nevh_sofroniou_spaletta10;
 /* Explicit, by parts, for H = A + B where A has all momenta and is moved exactly: a
    quadratic form with constant coefficients, or p^2/2m - k/|q| of bodies about a
-   centre.  B = V(t, q) kicks.  With e for the size of B beside A, errors are e h^2 (wisdom_holman), e h^4 ... e h^8 with
-   e^2 h^2 (saba2 ... saba4), e h^8 + e^2 h^4 (aba84), e h^8 + e^2 h^6 + e^3 h^4
-   (aba864), and e h^10 + e^2 h^6 + e^3 h^4 (aba1064). */
+   centre.  B = V(t, q) kicks.  With e for the size of B beside A, errors are e h^2
+   (wisdom_holman), e h^4 ... e h^8 with e^2 h^2 (saba2 ... saba4), e h^8 + e^2 h^4
+   (aba84), e h^8 + e^2 h^6 + e^3 h^4 (aba864), and e h^10 + e^2 h^6 + e^3 h^4
+   (aba1064). */
 NEVH_API extern const nevh_integrator *const nevh_wisdom_holman;
 NEVH_API extern const nevh_integrator *const nevh_saba2;
 NEVH_API extern const nevh_integrator *const nevh_saba3;
