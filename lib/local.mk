@@ -60,6 +60,7 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/value.c \
 	lib/gradient/time.c \
 	lib/gradient/gsl_system.c \
+	lib/system/elementary_private.h \
 	lib/expression/tape_private.h \
 	lib/expression/tape_inside_private.h \
 	lib/expression/operations_private.h \
@@ -170,6 +171,7 @@ libnevh_core_la_SOURCES = \
 	lib/native/slope_length.c \
 	lib/native/slope_text.c \
 	lib/native/prelude_text.c \
+	lib/native/elementary_text.c \
 	lib/native/steps_text.c \
 	lib/native/splitting_text.c \
 	lib/native/vector_text_private.h \
@@ -322,7 +324,9 @@ libnevh_core_la_SOURCES = \
 	lib/scene/scene.c
 
 # The kernels' steps as text, for steps that are compiled: strings, line by line.
-step_texts = integrators/kernels/splitting_step.h \
+step_texts = lib/system/elementary.h \
+	lib/system/turn_far.h \
+	integrators/kernels/splitting_step.h \
 	lib/implicit/stage_progress.h \
 	lib/implicit/stage_judge.h \
 	integrators/kernels/stage_step.h \
@@ -341,6 +345,7 @@ step_texts = integrators/kernels/splitting_step.h \
 	lib/native/steps/implicit_lanes.h \
 	lib/native/steps/entry.h \
 	lib/native/steps/compiled_formulas.h \
+	lib/native/steps/elementary_shape.h \
 	lib/native/steps/formula_needs.h \
 	lib/native/steps/loop_needs.h \
 	lib/native/steps/series_sums.h \

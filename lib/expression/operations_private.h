@@ -9,9 +9,9 @@
             without
    name     in formulas
    value    the value y of arguments a and b.  Functions are called by
-            NEVH__F(f) where libmvec has them, by NEVH__L(f) where only libm has,
-            and by NEVH__H(f) where nevh has, for each kind of numbers; includers
-            define these
+            NEVH__F(f) where they are elementary, by NEVH__L(f) of libm where these
+            are exact, and by NEVH__H(f) where nevh has them, for each kind of
+            numbers; includers define these
    by_a     g times the derivatives by the arguments, of doubles
    ...      initializers of a nevh__operation_traits: the same as formulas, and what
             else differs from 0
@@ -77,14 +77,14 @@
     X(FUNCTION, TANH, "tanh", 1, NEVH__F(tanh)(a),                             \
       NEVH__G(1 / NEVH__F(cosh)(a) / NEVH__F(cosh)(a)), 0,                     \
       .by_a = {"1 y y * -"}, .steep = true)                                    \
-    X(FUNCTION, ASINH, "asinh", 1, NEVH__L(asinh)(a),                          \
+    X(FUNCTION, ASINH, "asinh", 1, NEVH__F(asinh)(a),                          \
       NEVH__G(1 / NEVH__F(hypot)(1, a)), 0,                                    \
       .by_a = {"1", "1 a a * + sqrt"}, .lanewise = true)                       \
-    X(FUNCTION, ACOSH, "acosh", 1, NEVH__L(acosh)(a),                          \
+    X(FUNCTION, ACOSH, "acosh", 1, NEVH__F(acosh)(a),                          \
       NEVH__G(1 / NEVH__F(sqrt)(a - 1) / NEVH__F(sqrt)(a + 1)), 0,             \
       .by_a = {"a 1 - -0.5 ^ 1 a + -0.5 ^ *"}, .lanewise = true,               \
       .edge = "a 1 -", .at_edge = "acosh(...), whose argument reaches 1,")     \
-    X(FUNCTION, ATANH, "atanh", 1, NEVH__L(atanh)(a),                          \
+    X(FUNCTION, ATANH, "atanh", 1, NEVH__F(atanh)(a),                          \
       NEVH__G(1 / ((1 - a) * (1 + a))), 0,                                     \
       .by_a = {"1", "1 a a * -"}, .lanewise = true, .edge = "1 a a * -",       \
       .at_edge = "atanh(...), whose argument reaches 1 or -1,")                \
@@ -93,7 +93,7 @@
     X(FUNCTION, LOG, "log", 1, NEVH__F(log)(a), NEVH__G(1 / a), 0,             \
       .by_a = {"1", "a"}, .edge = "a",                                         \
       .at_edge = "log(...), whose argument reaches 0,")                        \
-    X(FUNCTION, LOG10, "log10", 1, NEVH__L(log10)(a),                          \
+    X(FUNCTION, LOG10, "log10", 1, NEVH__F(log10)(a),                          \
       NEVH__G(1 / (a * NEVH__LN10)), 0,                                        \
       .by_a = {"1", "a 10 log *"}, .lanewise = true, .edge = "a",              \
       .at_edge = "log10(...), whose argument reaches 0,")                      \

@@ -1,8 +1,7 @@
 /* nevh: the operations of a tape, backwards: adjoints of columns side by side.
    SPDX-License-Identifier: GPL-3.0-or-later
 
-   Included once for each form of libm's functions: NEVH__F(f) is that of f, and
-   NEVH__NAMED(name) a function of that form.  Both are undefined at the end. */
+   Included twice, as tape_run.h is; NEVH__NAMED(name) is a function of a form. */
 /* One operation's adjoints g times its derivative by one argument are added to
    those of the argument, d; its last use comes first, and adds to nothing. */
 #define EACH(product)                                                          \
@@ -51,12 +50,21 @@ NEVH__NAMED(hand_on_b)(const sweep *s, const nevh__instruction *at, double *d) {
     switch (at->operation) { NEVH__OPERATIONS(CASE_B) }
 }
 
-/* journal: where it ends. */
-NEVH_SIMD static void NEVH__NAMED(backwards)(const sweep *s, size_t from,
-                                             size_t until,
-                                             const double *journal) {
+/* journal: where it ends; returns where it then does. */
+NEVH_SIMD static const double *NEVH__NAMED(backwards)(const sweep *s, size_t from,
+                                                      size_t until,
+                                                      const double *journal) {
     const nevh__instruction *code = s->tape->code;
     for (const nevh__instruction *at = code + until; at-- > code + from;) {
+#ifdef NEVH__PLAIN
+        if (nevh__is_far(at, nevh__rows_at(&s->rows, at->a),
+                         at->a.kind == NEVH__NUMBER ? NEVH__LANES
+                                                    : s->rows.columns)) {
+            size_t i = (size_t)(at - code);
+            journal = NEVH__PLAIN(s, i, i + 1, journal);
+            continue;
+        }
+#endif
         double *d_a = adjoint(s, at->a), *d_b = adjoint(s, at->b);
         if (d_a)
             NEVH__NAMED(hand_on_a)(s, at, d_a);
@@ -67,6 +75,7 @@ NEVH_SIMD static void NEVH__NAMED(backwards)(const sweep *s, size_t from,
         if (!at->fresh)
             journal = put_back(s, at->to, journal);
     }
+    return journal;
 }
 #undef EACH
 #undef CASE_A
@@ -74,3 +83,4 @@ NEVH_SIMD static void NEVH__NAMED(backwards)(const sweep *s, size_t from,
 #undef ROWS
 #undef NEVH__F
 #undef NEVH__NAMED
+#undef NEVH__PLAIN

@@ -11,22 +11,22 @@ static double *write_row(double *journal, const double row[], size_t columns) {
     return journal + columns;
 }
 
-/* Without vector functions the two forms are the same. */
+#undef NEVH__F
+#define NEVH__F(f) nevh__##f
+#define NEVH__RUN  run_plain
+#include "expression/tape_run.h"
 #ifdef NEVH__VECTORS
-#define NEVH__F(f) nevh_simd_##f
-#define NEVH__RUN  run_vectors
+#define NEVH__F(f)  nevh__near_##f
+#define NEVH__RUN   run
+#define NEVH__PLAIN run_plain
 #include "expression/tape_run.h"
 #else
-#define run_vectors run_libm
+#define run run_plain
 #endif
-#define NEVH__F(f) f
-#define NEVH__RUN  run_libm
-#include "expression/tape_run.h"
 
 double *nevh__rows_run(const nevh__rows *r, const nevh__instruction code[],
                        size_t length, double journal[]) {
-    return (r->portable ? run_libm : run_vectors)(r, code, code + length,
-                                                  journal);
+    return run(r, code, code + length, journal);
 }
 
 nevh__rows nevh__rows_of(const nevh__tape *tape, size_t width, size_t from,

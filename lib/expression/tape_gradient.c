@@ -41,17 +41,18 @@ static const double *put_back(const sweep *s, uint32_t slot,
     return journal - columns;
 }
 
-/* Without vector functions the two forms are the same. */
+#undef NEVH__F
+#define NEVH__F(f)        nevh__##f
+#define NEVH__NAMED(name) name##_plain
+#include "expression/tape_back.h"
 #ifdef NEVH__VECTORS
-#define NEVH__F(f)        nevh_simd_##f
-#define NEVH__NAMED(name) name##_vectors
+#define NEVH__F(f)        nevh__near_##f
+#define NEVH__NAMED(name) name
+#define NEVH__PLAIN       backwards_plain
 #include "expression/tape_back.h"
 #else
-#define backwards_vectors backwards_libm
+#define backwards backwards_plain
 #endif
-#define NEVH__F(f)        f
-#define NEVH__NAMED(name) name##_libm
-#include "expression/tape_back.h"
 
 /* 1, but NaN where the value is not finite. */
 static void seed(const sweep *s) {
@@ -71,8 +72,7 @@ static void run_back(const sweep *s, size_t from, size_t until, double *scratch,
         double *end = nevh__rows_run(&s->rows, code + from, length, scratch);
         if (until == s->tape->length)
             seed(s);
-        (s->rows.portable ? backwards_libm : backwards_vectors)(s, from, until,
-                                                                end);
+        backwards(s, from, until, end);
         return;
     }
     size_t kept = s->tape->slots * s->rows.columns, half = length / 2;
@@ -93,7 +93,6 @@ typedef struct {
     double *dh_dq, *dh_dp, *dh_dt;
     const nevh__tape *tape;
     size_t width;
-    bool portable;
 } task;
 
 static void sweep_columns(const task *job, size_t from, size_t columns,
@@ -108,7 +107,6 @@ static void sweep_columns(const task *job, size_t from, size_t columns,
                   (job->dh_dp ? NEVH__BY_P : 0u) |
                   (job->dh_dt ? NEVH__BY_T : 0u),
     };
-    s.rows.portable = job->portable;
     s.base[NEVH__T] = job->dh_dt ? job->dh_dt + from : NULL;
     s.base[NEVH__Q] = job->dh_dq ? job->dh_dq + from : NULL;
     s.base[NEVH__P] = job->dh_dp ? job->dh_dp + from : NULL;
@@ -174,22 +172,19 @@ static void sweep_task(const task *job) {
         sweep_most(job);
 }
 
-#define GRADIENT(name, is_portable)                                            \
-    void name(size_t width, const double t[], const double q[],                \
-              const double p[], const double c[], const void *tape,            \
-              double dh_dq[], double dh_dp[]) {                                \
-        sweep_task(&(task){.t = t,                                             \
-                           .q = q,                                             \
-                           .p = p,                                             \
-                           .c = c,                                             \
-                           .dh_dq = dh_dq,                                     \
-                           .dh_dp = dh_dp,                                     \
-                           .tape = tape,                                       \
-                           .width = width,                                     \
-                           .portable = is_portable});                          \
-    }
-GRADIENT(nevh__tape_block_gradient, false)
-GRADIENT(nevh__tape_portable_gradient, true)
+void nevh__tape_block_gradient(size_t width, const double t[], const double q[],
+                               const double p[], const double c[],
+                               const void *tape, double dh_dq[],
+                               double dh_dp[]) {
+    sweep_task(&(task){.t = t,
+                       .q = q,
+                       .p = p,
+                       .c = c,
+                       .dh_dq = dh_dq,
+                       .dh_dp = dh_dp,
+                       .tape = tape,
+                       .width = width});
+}
 
 void nevh__tape_block_time(size_t width, const double t[], const double q[],
                            const double p[], const double c[], const void *tape,

@@ -4,6 +4,7 @@
 #define NEVH_TAPE_INSIDE_PRIVATE_H
 
 #include "expression/tape_private.h"
+#include "system/elementary_private.h"
 #include "system/system_private.h"
 
 /* False of min, mod and the others that jump, or whose derivative does. */
@@ -56,7 +57,6 @@ typedef struct {
     size_t pitch[NEVH__KINDS];
     double *slots; /* base[NEVH__SLOT] */
     size_t columns;
-    bool portable; /* functions are libm's, not those of vectors */
     double *out; /* where the last operation's value goes; NULL: to its slot */
 } nevh__rows;
 
@@ -66,6 +66,18 @@ enum { NEVH__TAPE_COLUMNS = 64, NEVH__TAPE_SCRATCH = 2048 };
 static inline const double *nevh__rows_at(const nevh__rows *r,
                                           nevh__tape_operand o) {
     return r->base[o.kind] + o.at * r->pitch[o.kind];
+}
+
+/* True if a function's argument may have to be reduced by more than vector code does. */
+static inline bool nevh__is_far(const nevh__instruction *i, const double row[],
+                                size_t columns) {
+    bool far = false;
+    if (i->operation != NEVH__SIN && i->operation != NEVH__COS &&
+        i->operation != NEVH__TAN && i->operation != NEVH__SINCOS)
+        return false;
+    for (size_t k = 0; k < columns; k++)
+        far |= !(fabs(row[k]) < NEVH__NEAR);
+    return far;
 }
 
 /* The rows of a block of `width` columns from `from` on. */

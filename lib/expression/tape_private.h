@@ -158,9 +158,8 @@ size_t nevh__tape_length(const nevh__tape *);
 
 /* The functions of a nevh_term whose params is the tape; nevh_term_fn etc.
 
-   In value and in the real part of complex_value each operation is libm's, in
-   blocks libmvec's (below 4 ulp) where there is one: without trigonometric
-   and other functions, or with NEVH_PORTABLE, the three agree to the bit.
+   The value, the real part of complex_value and blocks agree to the bit, on every
+   machine, unless a special function is called.
    Where the value is not finite no derivative is: each by a variable that the
    tape reads is NaN.
    cost     gradient: about 2.5 values; with more than about 1000 operations,
@@ -175,11 +174,6 @@ void nevh__tape_block_gradient(size_t width, const double t[], const double q[],
                                const double p[], const double c[],
                                const void *tape, double dh_dq[],
                                double dh_dp[]);
-/* The same by libm's functions, not those of vectors. */
-void nevh__tape_portable_gradient(size_t width, const double t[],
-                                  const double q[], const double p[],
-                                  const double c[], const void *tape,
-                                  double dh_dq[], double dh_dp[]);
 /* The derivative with respect to t. */
 void nevh__tape_block_time(size_t width, const double t[], const double q[],
                            const double p[], const double c[], const void *tape,

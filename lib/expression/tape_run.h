@@ -1,8 +1,9 @@
 /* nevh: the operations of a tape, forwards, over columns side by side.
    SPDX-License-Identifier: GPL-3.0-or-later
 
-   Included once for each form of libm's functions: NEVH__F(f) is that of f, and
-   NEVH__RUN the name of the function.  Both are undefined at the end. */
+   Included twice: NEVH__F(f) is the form of the function f, and NEVH__RUN the name
+   of what is defined.  Both are undefined at the end.  Where NEVH__PLAIN is
+   defined, functions take small arguments, and it runs operations of others. */
 /* Applies an operation to whole vectors; numbers are not advanced. */
 #define EACH(row, value)                                                       \
     for (size_t i = 0; i < columns; i += 8) {                                  \
@@ -29,6 +30,14 @@ NEVH_SIMD static double *NEVH__RUN(const nevh__rows *r,
         size_t step_a = at->a.kind != NEVH__NUMBER;
         size_t step_b = at->b.kind != NEVH__NUMBER;
         bool last = r->out && at + 1 == until;
+#ifdef NEVH__PLAIN
+        if (nevh__is_far(at, from_a, step_a ? columns : NEVH__LANES)) {
+            nevh__rows one = *r;
+            one.out = last ? r->out : NULL;
+            journal = NEVH__PLAIN(&one, at, at + 1, journal);
+            continue;
+        }
+#endif
         double *to = last ? r->out : r->slots + at->to * columns;
         double *also = r->slots + at->also * columns;
         if (journal && !at->fresh)
@@ -38,8 +47,7 @@ NEVH_SIMD static double *NEVH__RUN(const nevh__rows *r,
         switch (at->operation) {
             NEVH__OPERATIONS(CASE)
         case NEVH__SINCOS:
-            EACH(to, NEVH__F(sin)(a))
-            EACH(also, NEVH__F(cos)(a))
+            EACH(to, NEVH__F(sincos)(a, also + i + lane))
         }
     }
     return journal;
@@ -48,3 +56,4 @@ NEVH_SIMD static double *NEVH__RUN(const nevh__rows *r,
 #undef EACH
 #undef NEVH__F
 #undef NEVH__RUN
+#undef NEVH__PLAIN

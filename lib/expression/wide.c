@@ -5,6 +5,7 @@
 #ifndef NEVH_QUADMATH
 #include "expression/tape_operations_private.h"
 #undef NEVH__L
+#undef NEVH__F
 #undef NEVH__H
 #undef NEVH__S
 #include <math.h>

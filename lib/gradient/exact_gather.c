@@ -113,13 +113,6 @@ static inline bool add(const nevh__scatter_map *map, size_t width,
     return !(found & 1);
 }
 
-nevh_block_gradient_fn nevh__exact_gradient(const nevh_field *f,
-                                            const nevh_term *term) {
-    return f->portable && term->gradient == nevh__tape_block_gradient
-               ? nevh__tape_portable_gradient
-               : term->gradient;
-}
-
 /* All instances in one block; whether all is finite. */
 static inline bool take_block(nevh_field *f, nevh__planned *term,
                               const nevh__places *at) {
@@ -135,7 +128,7 @@ static inline bool take_block(nevh_field *f, nevh__planned *term,
         slopes_q = at->dh_dq;
     if (of_p && in_place && term == f->whole_p)
         slopes_p = at->dh_dp;
-    nevh__exact_gradient(f, decl)(stride, times(f, decl, at, stride), q, p,
+    decl->gradient(stride, times(f, decl, at, stride), q, p,
                                   constants(f, term, width, stride),
                                   decl->params, at->dh_dq ? slopes_q : NULL,
                                   at->dh_dp ? slopes_p : NULL);
@@ -177,7 +170,7 @@ static int take_part(nevh_field *f, nevh__planned *term, const nevh__block *b,
     const double *q = f->rows, *p = q + term->nq * b->stride;
     const double *c = p + term->np * b->stride;
     double *slopes_p = f->slopes + term->nq * b->stride;
-    nevh__exact_gradient(f, decl)(
+    decl->gradient(
         b->stride, decl->time ? f->times : f->zeros, q, p, c, decl->params,
         at->dh_dq ? f->slopes : NULL, at->dh_dp ? slopes_p : NULL);
     size_t first = at->dh_dq ? 0 : term->nq,

@@ -164,7 +164,6 @@ static const char add[] =
 
 static bool write_term(nevh__writer *w, const nevh_term *is) {
     nevh__formula_text formula = {.tape = is->params,
-                                  .scalar = true,
                                   .variable = name_at_state,
                                   .data = is};
     nevh__write_effect(w, is);

@@ -154,7 +154,6 @@ static bool write_forwards(nevh__writer *w, nevh__formula_text *f, reading *r,
                            char result[NEVH__NAME], double *most) {
     const nevh__tape *tape = f->tape;
     f->id = w->formulas++;
-    f->scalar |= w->readable;
     write_numbers(w, f);
     for (uint32_t i = 0; i < tape->length; i++) {
         const nevh__instruction *at = &tape->code[i];
@@ -165,12 +164,13 @@ static bool write_forwards(nevh__writer *w, nevh__formula_text *f, reading *r,
         }
         trace(f, r, i);
         find_names(w, f, r, i, &x);
-        nevh__operation_names m = {x.a, x.b, NULL, NULL, f->lanes, f->scalar};
-        bool pair = at->operation == NEVH__SINCOS;
-        nevh__write_operation(w, pair ? NEVH__SIN : at->operation,
-                              NEVH__OPERATION_VALUE, x.y, &m);
-        if (pair)
-            nevh__write_operation(w, NEVH__COS, NEVH__OPERATION_VALUE, x.also,
+        nevh__operation_names m = {x.a, x.b, NULL, NULL, f->lanes};
+        if (at->operation == NEVH__SINCOS)
+            nevh__write(w, "    %s %s, %s = %ssincos(%s, &%s);\n", type_of(f),
+                        x.also, x.y, f->lanes ? f->lanes->call : "own_", x.a,
+                        x.also);
+        else
+            nevh__write_operation(w, at->operation, NEVH__OPERATION_VALUE, x.y,
                                   &m);
     }
     nevh__tape_operand o = tape->result;
@@ -239,7 +239,7 @@ static void hand_on(nevh__writer *w, const nevh__formula_text *f,
     nevh__write_operation(
         w, at->operation, second ? NEVH__OPERATION_BY_B : NEVH__OPERATION_BY_A,
         product,
-        &(nevh__operation_names){x->a, x->b, x->y, g, f->lanes, f->scalar});
+        &(nevh__operation_names){x->a, x->b, x->y, g, f->lanes});
     if (*begun)
         nevh__write(w, "    %s += %s;\n", to, product);
     else
@@ -374,7 +374,7 @@ static void write_parts(nevh__writer *w, const nevh__formula_text *f,
             part_name(f, at->a, r->a[i], cosine_a, g);
             nevh__write_expression(
                 w, at->operation, NEVH__OPERATION_BY_A,
-                &(nevh__operation_names){x.a, x.b, x.y, g, NULL, true});
+                &(nevh__operation_names){x.a, x.b, x.y, g, NULL});
         }
         if (a && b)
             nevh__write(w, " + ");
@@ -383,7 +383,7 @@ static void write_parts(nevh__writer *w, const nevh__formula_text *f,
             part_name(f, at->b, r->b[i], cosine_b, g);
             nevh__write_expression(
                 w, at->operation, NEVH__OPERATION_BY_B,
-                &(nevh__operation_names){x.a, x.b, x.y, g, NULL, true});
+                &(nevh__operation_names){x.a, x.b, x.y, g, NULL});
             nevh__write(w, ")");
         }
         nevh__write(w, ";\n");
@@ -394,7 +394,6 @@ bool nevh__write_complex(nevh__writer *w, nevh__formula_text *f,
                          nevh__variable by, size_t k, char result[NEVH__NAME]) {
     reading r;
     double most;
-    f->scalar = true;
     if (!new_reading(f->tape, &r)) {
         w->failed = true;
         return false;

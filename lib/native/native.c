@@ -210,7 +210,11 @@ bool nevh__native_write(nevh__writer *text, nevh_work *w) {
 /* The text of what is compiled; false: there is none. */
 static bool write_text(nevh__writer *text, nevh_work *w) {
     nevh__write_prelude(text);
-    return nevh__native_write(text, w) && !text->failed;
+    size_t prelude = text->used;
+    if (!nevh__native_write(text, w))
+        return false;
+    nevh__write_elementary(text, prelude);
+    return !text->failed;
 }
 
 /* Arguments of steps, but for numbers; false when memory is out. */

@@ -33,10 +33,7 @@ static const char *write_word(nevh__writer *w, const char *word, size_t length,
         nevh__write(w, "%s", name);
     else if (is(word, length, "NEVH__F")) { /* NEVH__F(sin) */
         size_t bytes = strcspn(after, ")") - 1;
-        nevh__write(w, "%s%.*s",
-                    m->lanes    ? m->lanes->call
-                    : m->scalar ? ""
-                                : "lane_",
+        nevh__write(w, "%s%.*s", m->lanes ? m->lanes->call : "own_",
                     (int)bytes, after + 1);
         after += bytes + 2;
     } else if (is(word, length, "NEVH__L") || is(word, length, "NEVH__H")) {
@@ -116,14 +113,13 @@ void nevh__write_operation(nevh__writer *w, unsigned operation,
                            nevh__operation_part part, const char *to,
                            const nevh__operation_names *m) {
     const char *text = texts[operation][part];
-    bool calls = m->scalar && strstr(text, "NEVH__F(");
     nevh__write(w, "    %s %s = ", m->lanes ? m->lanes->type : "double", to);
-    if (!m->lanes || (!calls && !nevh__operation_of(operation)->lanewise)) {
+    if (!m->lanes || !nevh__operation_of(operation)->lanewise) {
         write_text(w, text, m);
         nevh__write(w, ";\n");
         return;
     }
-    nevh__operation_names one = {"a_", "b_", "y_", "g_", NULL, m->scalar};
+    nevh__operation_names one = {"a_", "b_", "y_", "g_", NULL};
     nevh__write(w, "%s;\n    %s { double a_ = %s[lane], b_ = %s[lane]", m->a,
                 m->lanes->each, m->a, m->b);
     if (m->y)

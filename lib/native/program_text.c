@@ -161,6 +161,7 @@ static bool write_body(nevh__writer *body, nevh_work *work,
         return false;
     if (!p->functions)
         write_main(body, work, p);
+    nevh__write_elementary(body, 0);
     return !body->failed;
 }
 

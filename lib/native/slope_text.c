@@ -90,7 +90,6 @@ static bool write_exact(sum *s) {
     nevh__formula_text f = {.tape = is->params,
                             .lanes =
                                 nevh__has_lanes(s->of.w) ? &nevh__eight : NULL,
-                            .scalar = s->of.f->portable,
                             .variable = name_at_state,
                             .data = s};
     unsigned first = s->of.w->formulas;
@@ -287,7 +286,6 @@ static bool write_points(nevh__writer *w, stencil *x) {
     bool lanes = nevh__has_lanes(w);
     nevh__formula_text f = {.tape = x->s->of.term->term->decl.params,
                             .lanes = lanes ? &nevh__eight : NULL,
-                            .scalar = !lanes || x->s->of.f->portable,
                             .variable = name_at_point,
                             .data = x};
     for (x->at = 0; x->at < x->count; x->at++) {

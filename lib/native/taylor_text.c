@@ -68,9 +68,9 @@ static void write_call(const author *a, const nevh__batch *b, size_t y,
     if (!name)
         nevh__write(a->text, "v%zu = 0;\n", y);
     else if (b->arity > 1)
-        nevh__write(a->text, "v%zu = __builtin_%s(%s, %s);\n", y, name, x, z);
+        nevh__write(a->text, "v%zu = own_%s(%s, %s);\n", y, name, x, z);
     else
-        nevh__write(a->text, "v%zu = __builtin_%s(%s);\n", y, name, x);
+        nevh__write(a->text, "v%zu = own_%s(%s);\n", y, name, x);
 }
 
 static void write_power(const author *a, size_t y, const char *x,
@@ -82,7 +82,7 @@ static void write_power(const author *a, size_t y, const char *x,
     else if (exponent == -0.5)
         nevh__write(a->text, "v%zu = 1 / __builtin_sqrt(%s);\n", y, x);
     else
-        nevh__write(a->text, "v%zu = __builtin_pow(%s, N[%zu]);\n", y, x,
+        nevh__write(a->text, "v%zu = own_pow(%s, N[%zu]);\n", y, x,
                     number);
     nevh__write(a->text, "const double e%zu = 1 / %s;\n", y, x);
 }

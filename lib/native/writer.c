@@ -34,6 +34,16 @@ void nevh__write(nevh__writer *w, const char *format, ...) {
     va_end(arguments);
 }
 
+void nevh__writer_insert(nevh__writer *w, size_t at, const char *text,
+                         size_t length) {
+    w->failed |= !make_room(w, length);
+    if (w->failed || !length)
+        return;
+    memmove(w->text + at + length, w->text + at, w->used - at + 1);
+    memcpy(w->text + at, text, length);
+    w->used += length;
+}
+
 void nevh__writer_free(nevh__writer *w) {
     free(w->text);
     free(w->numbers);

@@ -49,7 +49,7 @@ typedef struct {
     const struct nevh__watched
         *watched;            /* what is found of each state; or NULL */
     const nevh_field *field; /* for that */
-    bool readable; /* numbers stand in the text, functions are libm's */
+    bool readable; /* numbers stand in the text */
     const char
         *forms[NEVH__MOST_FORMS]; /* for readers: names that are defined */
     size_t form_count;
@@ -65,6 +65,8 @@ void nevh__write(nevh__writer *, const char *format, ...)
 /* A text in which $1, $2 and so on stand for words. */
 void nevh__write_filled(nevh__writer *, const char *text,
                         const char *const words[]);
+/* Text of so many bytes before what stands there. */
+void nevh__writer_insert(nevh__writer *, size_t at, const char *text, size_t length);
 void nevh__writer_free(nevh__writer *);
 /* Names a number. */
 void nevh__write_number(nevh__writer *, double, char name[NEVH__NAME]);
@@ -112,8 +114,14 @@ static inline bool nevh__has_lanes(const nevh__writer *w) {
 /* "double", or what stands side by side. */
 const char *nevh__number_type(const nevh__writer *);
 
+/* Writes the elementary functions that the text from there on calls, before it. */
+void nevh__write_elementary(nevh__writer *, size_t at);
+
 /* Headers of kernels, and of steps/, line by line, ended by NULL: made from them
    by kernel_texts.awk.  What NEVH__COMPILED stands for is left out for readers. */
+extern const char *const nevh__elementary_text[];
+extern const char *const nevh__elementary_shape_text[];
+extern const char *const nevh__turn_far_text[];
 extern const char *const nevh__splitting_step_text[];
 extern const char *const nevh__stage_progress_text[];
 extern const char *const nevh__stage_judge_text[];
@@ -162,7 +170,6 @@ extern const nevh__lane_words nevh__eight, nevh__four;
 typedef struct nevh__formula_text {
     const nevh__tape *tape;
     const nevh__lane_words *lanes; /* NULL: one point */
-    bool scalar;                   /* functions of libm, not of vectors */
     /* Names a variable. */
     void (*variable)(nevh__writer *, const struct nevh__formula_text *,
                      nevh__variable, size_t k, char name[NEVH__NAME]);

@@ -1,11 +1,12 @@
 /* nevh: Taylor coefficients in doubles.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "system/elementary_private.h"
 #include <math.h>
 
 typedef double real;
 typedef double stored;
 #define NAMED(name) name##_double
-#define FUNCTION(f) f
+#define FUNCTION(f) nevh__##f
 #define ROWS        1
 #define VECTORS     NEVH_SIMD
 #include "taylor/series_text.h"

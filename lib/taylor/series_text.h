@@ -137,6 +137,8 @@ NEVH__INLINE void add_summands(const series *s, const nevh__batch *b) {
 #define CASE_FUNCTION(identifier, value)                                       \
     case NEVH__##identifier:                                                   \
         return value;
+#undef NEVH__F
+#undef NEVH__L
 #define NEVH__F(f) FUNCTION(f)
 #define NEVH__L(f) FUNCTION(f)
 static real function(const nevh__batch *batch, real a, real b) {

@@ -1,4 +1,4 @@
-/* nevh: what formulas need before them in compiled steps, but for functions of libm.
+/* nevh: what formulas need before them in compiled steps, but for elementary functions.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef NEVH_COMPILED_FORMULAS_H
 #define NEVH_COMPILED_FORMULAS_H
@@ -17,11 +17,11 @@ typedef double few __attribute__((vector_size(32), aligned(8)));
 #define ALL_FOUR(x)  ((few){x, x, x, x})
 #define EACH_OF_FOUR for (int lane = 0; lane < 4; lane++)
 extern double fabs(double) CONST, floor(double) CONST, rint(double) CONST;
-extern double asinh(double) CONST, acosh(double) CONST, atanh(double) CONST;
-extern double log10(double) CONST, sqrt(double) CONST;
+extern double sqrt(double) CONST;
 extern double fmod(double, double) CONST;
 
-#define lane_sqrt __builtin_sqrt
+#define INFINITY __builtin_inf()
+#define NAN      __builtin_nan("")
 INLINE wide wide_sqrt(wide x) {
     wide y;
     EACH_LANE y[lane] = __builtin_sqrt(x[lane]);
