@@ -7,7 +7,8 @@
 
 enum { MOST_SHAPES = 6 };
 
-/* What is drawn; shapes are moved by whole periods next to the middle. */
+/* The part of the plane that is drawn; shapes are moved by whole periods next to the
+   middle. */
 typedef struct {
     double middle, low_x, high_x, low_y, high_y;
 } window;

@@ -378,7 +378,7 @@ static int measure(const plan *p, extent *e) {
     return status;
 }
 
-/* How far coordinate k moves: a turn at most, where it is an angle. */
+/* The length over which coordinate k moves: a turn at most, where it is an angle. */
 static double range_of(const plan *p, const extent *e, size_t k) {
     double period = nevh_scene_period(p->scene, k),
            range = e->high[k] - e->low[k];
