@@ -7,7 +7,7 @@ page_parts = web/page.css web/page.html web/unpack.js web/engine.js web/view.js 
 page_scripts = web/module.sh web/kit.sh web/looks.awk web/gallery.sh
 EXTRA_DIST += $(page_sources) $(page_parts) $(page_scripts)
 
-page_packages = clang lld llvm wasi-libc libclang-rt-dev-wasm32 zopfli
+page_packages = clang lld llvm wasi-libc libclang-rt-dev-wasm32 zopfli binaryen
 
 .PHONY: page
 if HAVE_KIT

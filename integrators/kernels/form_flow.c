@@ -399,7 +399,8 @@ NEVH__INLINE void add_block(const block *b, const double *d_high,
 
 static void add_centre(const block *b, double t, size_t width, const double q[],
                        const double p[], double dq[], double dp[]) {
-    long double r[NEVH__SPACE] = {0}, v[NEVH__SPACE] = {0}, w = b->a[1];
+    nevh__extended r[NEVH__SPACE] = {0}, v[NEVH__SPACE] = {0};
+    nevh__extended w = (nevh__extended)b->a[1];
     for (size_t k = 0; k < b->count; k++) {
         r[k] = q[b->index[k] * width];
         v[k] = p[b->index[k] * width] * w;

@@ -5,13 +5,21 @@
 
 #include "system/parts_private.h"
 
+/* Near collisions differences are small.  WebAssembly has long double as software alone,
+   25 kB of it. */
+#ifdef __wasm__
+typedef double nevh__extended;
+#else
+typedef long double nevh__extended;
+#endif
+
 /* The flow of v^2/2 - mu/|r| over a time t of any sign; mu < 0 repels.
    r, v     the state, which is moved; NAN where r is 0 or mu is 0, or a number is not
             finite.  Energy and angular momentum are off by at most two roundings of
             doubles, those of kinetic and potential energy and of |r| |v| at either
-            end; in long double, as near collisions differences are small.
+            end.
    cost     about 0.4 microseconds; no memory */
-void nevh__kepler_flow(double mu, double t, long double r[NEVH__SPACE],
-                       long double v[NEVH__SPACE]);
+void nevh__kepler_flow(double mu, double t, nevh__extended r[NEVH__SPACE],
+                       nevh__extended v[NEVH__SPACE]);
 
 #endif
