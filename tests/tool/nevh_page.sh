@@ -69,9 +69,6 @@ cp $page $work/first.html
 exits 0 page pendulum -o $page
 cmp -s $page $work/first.html || fails "differs from run to run"
 size=$(wc -c <$page)
-# web/module.sh: binaryen makes the module smaller by 3 %.
-most=300000
-command -v wasm-opt >/dev/null 2>&1 || most=309000
-test $size -le $most || fails "is of $size bytes"
+test $size -le 300000 || fails "is of $size bytes"
 
 exit $status
