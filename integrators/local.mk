@@ -86,4 +86,5 @@ libnevh_core_la_SOURCES += \
 	integrators/gsl_references.c \
 	integrators/kernels/taylor_private.h \
 	integrators/kernels/taylor_kernel.c \
+	integrators/kernels/taylor_plan.c \
 	integrators/taylor.c

@@ -316,6 +316,7 @@ libnevh_core_la_SOURCES = \
 	lib/scene/sweep.c \
 	lib/scene/sweep_keep.c \
 	lib/scene/binding.c \
+	lib/scene/sweep_window.c \
 	lib/scene/sweep_workers.c \
 	lib/scene/worker_lanes.c \
 	lib/scene/worker_private.h \

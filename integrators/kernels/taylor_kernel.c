@@ -7,9 +7,10 @@
    series is kept with the digits that its double lost.
 
    With a tolerance below rounding, and long doubles in the processor, the first
-   coefficients, too, have the digits that doubles lose: they are those of the
-   state with all its digits, taken in long double.  The others add so little to a step that their rounding is far below that
-   of the state, so errors of steps are those of long double, nearly.
+   coefficients, too, have the digits that doubles lose: they are those of the state
+   with all its digits, taken in long double.  The others add so little to a step that
+   their rounding is far below that of the state, so errors of steps are nearly those
+   of long double.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "taylor_private.h"
 #include "taylor/series_private.h"
@@ -22,32 +23,6 @@
 typedef nevh__taylor_plan taylor_plan;
 typedef nevh__taylor_chain chain;
 
-const nevh__recurrence *nevh__taylor_recurrence(const nevh_work *w,
-                                                size_t *order) {
-    const taylor_plan *plan = w->plan;
-    *order = plan->order;
-    return plan->recurrence;
-}
-
-void nevh__taylor_use(nevh_work *w, nevh__series_code *code,
-                      const double numbers[], bool *differs) {
-    taylor_plan *plan = w->plan;
-    plan->code = code;
-    plan->numbers = numbers;
-    plan->differs = differs;
-}
-
-/* A series detects a narrow part of H from about ten times its width.  It must not
-   pass one that steps of h would find: its length is at most this many steps. */
-static const double most_steps = 8;
-
-enum { HEAD = 5, FIRST = 8 };
-
-static size_t chain_size(const nevh_work *w) {
-    const taylor_plan *plan = w->plan;
-    return HEAD + 2 * w->n * (plan->order + 2 + (plan->first ? FIRST : 0));
-}
-
 static chain chain_at(const nevh_work *w, double *from) {
     const taylor_plan *plan = w->plan;
     return (chain){.begun = from,
@@ -55,91 +30,10 @@ static chain chain_at(const nevh_work *w, double *from) {
                    .since_roundoff = from + 2,
                    .reach = from + 3,
                    .unit = from + 4,
-                   .roundoff = from + HEAD,
-                   .rows = from + HEAD + 2 * w->n,
-                   .lost = from + HEAD + 2 * w->n * (plan->order + 2)};
-}
-
-static void clear(nevh_work *w) {
-    taylor_plan *plan = w->plan;
-    if (!plan)
-        return;
-    nevh__series_free_double(plan->series);
-    nevh__series_free_long(plan->first);
-    free(plan->first_rows);
-    free(plan->watched);
-    nevh__recurrence_free(plan->recurrence);
-    free(plan);
-    w->plan = NULL;
-}
-
-/* An order more divides the error by e^2 where steps have the best length: the
-   fewer operations an order costs, the better are high ones. */
-static size_t order_for(double tolerance) {
-    double digits = -log(fmax(tolerance, 1e-18));
-    double order = ceil(3 + 0.72 * digits);
-    return order < 4 ? 4 : (size_t)order;
-}
-
-/* Tolerances below this are of errors that doubles cannot hold. */
-static const double finest = DBL_EPSILON;
-
-/* True if long doubles have 64 bits.  Elsewhere, where they are doubles, or a hundred
-   times as slow, doubles are used. */
-enum { LONGER = LDBL_MANT_DIG == 64 };
-
-static bool plan_series(const nevh_work *w, taylor_plan *plan) {
-    plan->series = nevh__series_new_double(plan->recurrence, plan->order);
-    plan->watched = nevh__array(plan->order * plan->recurrence->n_watched,
-                                sizeof *plan->watched);
-    if (!LONGER || !plan->series || !plan->watched ||
-        !(w->options->tolerance < finest))
-        return plan->series && plan->watched;
-    plan->first = nevh__series_new_long(plan->recurrence, FIRST);
-    plan->first_rows =
-        nevh__array(2 * w->n * (FIRST + 2), sizeof *plan->first_rows);
-    return plan->first && plan->first_rows;
-}
-
-/* Runs go on behind kinks, as series do not. */
-static int refuse_kink(nevh_work *w, const nevh__edge *e) {
-    return nevh_work_fail(
-        w, NEVH_ESTRUCT,
-        "effect \"%s\" has no Taylor series: its function "
-        "%s(...) is not analytic, so that its derivatives say "
-        "nothing about it elsewhere",
-        e->effect ? e->effect : "H", nevh__operation_name(e->function));
-}
-
-static int plan(nevh_work *w) {
-    double tolerance = w->options->tolerance;
-    if (!(tolerance > 0))
-        return nevh_work_fail(w, NEVH_EINVAL,
-                              "%s has no fixed steps: it needs a tolerance",
-                              w->integrator->name);
-    taylor_plan *plan = w->plan = nevh__array(1, sizeof *plan);
-    if (!plan)
-        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
-    plan->order = order_for(tolerance);
-    w->order = (int)plan->order;
-    bool timed = !(nevh_system_traits(w->system) & NEVH_AUTONOMOUS);
-    plan->longest = timed ? 1 : most_steps;
-    nevh__report report = {0};
-    plan->recurrence =
-        nevh__recurrence_new(w->system, w->friction, false, &report);
-    if (!plan->recurrence)
-        return nevh_work_fail(w, report.status, "%s", report.text);
-    size_t kink = nevh__domain_kink(plan->recurrence);
-    if (kink != SIZE_MAX)
-        return refuse_kink(w, &plan->recurrence->edges[kink]);
-    int status = nevh_work_find_scale(w);
-    if (status)
-        return status;
-    if (!plan_series(w, plan))
-        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
-    w->memory_rows = chain_size(w);
-    w->scratch_size = chain_size(w) * (w->width > 1 ? w->width : 1) + 4 * w->n;
-    return NEVH_OK;
+                   .roundoff = from + NEVH__TAYLOR_HEAD,
+                   .rows = from + NEVH__TAYLOR_HEAD + 2 * w->n,
+                   .lost =
+                       from + NEVH__TAYLOR_HEAD + 2 * w->n * (plan->order + 2)};
 }
 
 /* The size of order k, relative to the state; times a power of two. */
@@ -214,12 +108,13 @@ static void pass(const chain *z, double time) {
 static void find_lost(const nevh_work *w, const chain *z, double t) {
     const taylor_plan *plan = w->plan;
     size_t each = 2 * w->n;
-    long double *rows = plan->first_rows, *state = rows + (FIRST + 1) * each;
+    long double *rows = plan->first_rows,
+                *state = rows + (NEVH__TAYLOR_FIRST + 1) * each;
     for (size_t i = 0; i < each; i++)
         state[i] = (long double)z->rows[i] + z->roundoff[i];
     nevh__series_in_long(plan->first, *z->unit);
     bool known = nevh__series_expand_long(plan->first, t, state, rows);
-    for (size_t i = 0; i < FIRST * each; i++) {
+    for (size_t i = 0; i < NEVH__TAYLOR_FIRST * each; i++) {
         double x = z->rows[each + i];
         z->lost[i] = known ? (double)(rows[each + i] - x) : 0;
     }
@@ -295,7 +190,7 @@ static int begin(nevh_work *w, const chain *z, double t, double h) {
         return NEVH_EDOM;
     if (!finite)
         return nevh_work_fail(w, NEVH_EDOM, NEVH__SERIES_NOT_FINITE, t);
-    if (LONGER && plan->first)
+    if (NEVH__TAYLOR_LONGER && plan->first)
         find_lost(w, z, t);
     double reach =
         fmin(reach_of(w, z->rows), plan->longest * fabs(h) / *z->unit);
@@ -315,10 +210,10 @@ static void pass_finely(const nevh_work *w, const chain *z, double step) {
     for (size_t i = 0; i < each; i++) {
         const double *row = z->rows + i;
         double high = 0;
-        for (size_t k = plan->order; k > FIRST; k--)
+        for (size_t k = plan->order; k > NEVH__TAYLOR_FIRST; k--)
             high = high * step + row[k * each];
         long double sum = high;
-        for (size_t k = FIRST; k > 0; k--)
+        for (size_t k = NEVH__TAYLOR_FIRST; k > 0; k--)
             sum = sum * step +
                   ((long double)row[k * each] + z->lost[(k - 1) * each + i]);
         sum = sum * step + z->roundoff[i] + row[0];
@@ -342,7 +237,7 @@ static void pass_state(const nevh_work *w, const chain *z, double step) {
 static int go_on(nevh_work *w, const chain *z, double step, double t,
                  double h) {
     const taylor_plan *plan = w->plan;
-    if (LONGER && plan->first)
+    if (NEVH__TAYLOR_LONGER && plan->first)
         pass_finely(w, z, step);
     else
         pass_state(w, z, step);
@@ -424,7 +319,8 @@ static int take(nevh_work *w, const chain *z, double t, double h) {
 
 static int step_one(nevh_work *w, double t, double h, double q[], double p[]) {
     chain z = chain_at(w, w->memory);
-    size_t n = w->n, size = chain_size(w) * sizeof(double);
+    size_t n = w->n,
+           size = nevh__taylor_chain_size(w->n, w->plan) * sizeof(double);
     bool copied = !reaches(&z, h) || w->accounts;
     double *state = w->scratch + w->scratch_size - 2 * n;
     if (copied) {
@@ -470,7 +366,8 @@ static int take_some(nevh_work *w, const chain *z, double t0, double h,
 /* Lanes one after the other, through copies of their columns. */
 static int step_lanes(nevh_work *w, double t0, double h, size_t from,
                       size_t *steps, double q[], double p[]) {
-    size_t n = w->n, width = w->width, size = chain_size(w);
+    size_t n = w->n, width = w->width,
+           size = nevh__taylor_chain_size(w->n, w->plan);
     double *state = w->scratch + w->scratch_size - 2 * n;
     int status = NEVH_OK;
     for (size_t lane = 0; !status && lane < width; lane++) {
@@ -529,9 +426,9 @@ size_t nevh__taylor_run(nevh_work *w, double t0, double h, size_t from,
     return done;
 }
 
-const nevh_kernel nevh__taylor_kernel = {.plan = plan,
+const nevh_kernel nevh__taylor_kernel = {.plan = nevh__taylor_plan_new,
                                          .step = step,
-                                         .clear = clear,
+                                         .clear = nevh__taylor_clear,
                                          .has_friction = true,
                                          .own_slopes = true,
                                          .holds = holds};

@@ -4,6 +4,7 @@
 #define NEVH_TAYLOR_PRIVATE_H
 
 #include "taylor/series_private.h"
+#include <float.h>
 #include <nevh/extend.h>
 
 extern const nevh_kernel nevh__taylor_kernel;
@@ -16,6 +17,14 @@ extern const nevh_kernel nevh__taylor_kernel;
 typedef int nevh__series_code(const double numbers[], double t,
                               const double state[], double rows[],
                               double watched[]);
+
+/* Numbers of a chain before its rows, and how many orders have digits that doubles
+   lose. */
+enum { NEVH__TAYLOR_HEAD = 5, NEVH__TAYLOR_FIRST = 8 };
+
+/* True if long doubles have 64 bits.  Elsewhere, where they are doubles, or a hundred
+   times as slow, doubles are used. */
+enum { NEVH__TAYLOR_LONGER = LDBL_MANT_DIG == 64 };
 
 typedef struct {
     nevh__recurrence *recurrence;
@@ -40,8 +49,19 @@ typedef struct {
     double *unit;           /* of time, in rows and lost: a power of two */
     double *roundoff;       /* 2n: of the state at its beginning */
     double *rows;           /* 2n times order + 1: its coefficients */
-    double *lost; /* 2n times FIRST: what those of orders 1 ... FIRST lost */
+    double
+        *lost; /* 2n times NEVH__TAYLOR_FIRST: what those of low orders lost */
 } nevh__taylor_chain;
+
+static inline size_t nevh__taylor_chain_size(size_t n,
+                                             const nevh__taylor_plan *plan) {
+    return NEVH__TAYLOR_HEAD +
+           2 * n * (plan->order + 2 + (plan->first ? NEVH__TAYLOR_FIRST : 0));
+}
+
+/* As of a kernel. */
+int nevh__taylor_plan_new(nevh_work *);
+void nevh__taylor_clear(nevh_work *);
 
 /* Takes up to `steps` steps, as nevh__native_run; of the states between them none is
    evaluated. */

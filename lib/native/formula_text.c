@@ -348,50 +348,46 @@ static void part_name(const nevh__formula_text *f, nevh__tape_operand o,
         snprintf(name, NEVH__NAME, "0x1p-332");
 }
 
+/* The imaginary parts of a sine and a cosine, taken together. */
+static void write_parts_of_both(nevh__writer *w, const nevh__formula_text *f,
+                                uint32_t i, const names *x, const char *part) {
+    nevh__write(w, "    double iv%u_%u = %s * %s;\n", f->id, i, x->also, part);
+    nevh__write(w, "    double iw%u_%u = -%s * %s;\n", f->id, i, x->y, part);
+}
+
 static void formula_text_write_parts(nevh__writer *w,
                                      const nevh__formula_text *f, reading *r,
                                      nevh__variable by, size_t k) {
     for (uint32_t i = 0; i < f->tape->length; i++) {
         const nevh__instruction *at = &f->tape->code[i];
         bool cosine_a = r->cosine[2 * i], cosine_b = r->cosine[2 * i + 1];
-        bool one = at->operation < NEVH__OPERATION_COUNT
-                       ? nevh__operation_arguments(at->operation) == 1
-                       : true;
+        bool one = at->operation >= NEVH__OPERATION_COUNT ||
+                   nevh__operation_arguments(at->operation) == 1;
         bool a = formula_text_moves(r, at->a, r->a[i], cosine_a, by, k);
         bool b = !one && formula_text_moves(r, at->b, r->b[i], cosine_b, by, k);
         names x;
-        char g[NEVH__NAME];
+        char of_a[NEVH__NAME], of_b[NEVH__NAME];
         if (!a && !b)
             continue;
         find_names(w, f, r, i, &x);
         r->begun[i] = true;
+        part_name(f, at->a, r->a[i], cosine_a, of_a);
         if (at->operation == NEVH__SINCOS) {
             r->begun_cosine[i] = true;
-            part_name(f, at->a, r->a[i], cosine_a, g);
-            nevh__write(w, "    double iv%u_%u = %s * %s;\n", f->id, i, x.also,
-                        g);
-            nevh__write(w, "    double iw%u_%u = -%s * %s;\n", f->id, i, x.y,
-                        g);
+            write_parts_of_both(w, f, i, &x, of_a);
             continue;
         }
+        nevh__operation_names m = {x.a, x.b, x.y, of_a, NULL, true};
         nevh__write(w, "    double iv%u_%u = ", f->id, i);
-        if (a) {
-            part_name(f, at->a, r->a[i], cosine_a, g);
-            nevh__write_expression(
-                w, at->operation, NEVH__OPERATION_BY_A,
-                &(nevh__operation_names){x.a, x.b, x.y, g, NULL, true});
-        }
-        if (a && b)
-            nevh__write(w, " + ");
+        if (a)
+            nevh__write_expression(w, at->operation, NEVH__OPERATION_BY_A, &m);
+        nevh__write(w, a && b ? " + (" : b ? "(" : "");
         if (b) {
-            nevh__write(w, "(");
-            part_name(f, at->b, r->b[i], cosine_b, g);
-            nevh__write_expression(
-                w, at->operation, NEVH__OPERATION_BY_B,
-                &(nevh__operation_names){x.a, x.b, x.y, g, NULL, true});
-            nevh__write(w, ")");
+            part_name(f, at->b, r->b[i], cosine_b, of_b);
+            m.g = of_b;
+            nevh__write_expression(w, at->operation, NEVH__OPERATION_BY_B, &m);
         }
-        nevh__write(w, ";\n");
+        nevh__write(w, b ? ");\n" : ";\n");
     }
 }
 

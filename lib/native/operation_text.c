@@ -16,47 +16,61 @@ static const char *const texts[][NEVH__OPERATION_PARTS] = {
 _Static_assert(sizeof texts / sizeof *texts == NEVH__OPERATION_COUNT,
                "each operation");
 
-static bool operation_text_is(const char *word, size_t length,
-                              const char *name) {
-    return strlen(name) == length && strncmp(word, name, length) == 0;
+/* The number of a word in a list that ends with NULL; that of the NULL: none. */
+static size_t operation_word(const char *word, size_t length,
+                             const char *const list[]) {
+    size_t i = 0;
+    while (list[i] &&
+           (strlen(list[i]) != length || strncmp(word, list[i], length) != 0))
+        i++;
+    return i;
+}
+
+/* A word that stands for another text. */
+static bool write_name(nevh__writer *w, const char *word, size_t length,
+                       const nevh__operation_names *m) {
+    static const char *const list[] = {"a",
+                                       "b",
+                                       "y",
+                                       "g",
+                                       "NEVH__G",
+                                       "NEVH__TWICE_G",
+                                       "NEVH__THRICE_G",
+                                       "NEVH__LN10",
+                                       NULL};
+    const char *const names[] = {m->a, m->b, m->y, m->g};
+    static const char *const texts_of_g[] = {"%s * ", "(2 * %s) * ",
+                                             "(3 * %s) * "};
+    size_t i = operation_word(word, length, list);
+    if (!list[i] || (i < 4 && !names[i]))
+        return false;
+    if (i < 4)
+        nevh__write(w, "%s", names[i]);
+    else if (i < 7)
+        nevh__write(w, texts_of_g[i - 4], m->g);
+    else
+        nevh__write(w, "2.302585092994045684");
+    return true;
 }
 
 /* One word of the table; returns where the text goes on. */
 static const char *write_word(nevh__writer *w, const char *word, size_t length,
                               const nevh__operation_names *m) {
+    /* NEVH__F(sin): of a lane; NEVH__H: of the text's own; NEVH__L: of libm */
+    static const char *const list[] = {"NEVH__F", "NEVH__H", "NEVH__L", NULL};
+    const char *lane = m->lanes ? m->lanes->call : m->scalar ? "" : "lane_";
+    const char *const before[] = {lane, "nevh__", ""};
     const char *after = word + length;
-    const char *name = operation_text_is(word, length, "a")   ? m->a
-                       : operation_text_is(word, length, "b") ? m->b
-                       : operation_text_is(word, length, "y") ? m->y
-                       : operation_text_is(word, length, "g") ? m->g
-                                                              : NULL;
-    if (name)
-        nevh__write(w, "%s", name);
-    else if (operation_text_is(word, length, "NEVH__F")) { /* NEVH__F(sin) */
-        size_t bytes = strcspn(after, ")") - 1;
-        nevh__write(w, "%s%.*s",
-                    m->lanes    ? m->lanes->call
-                    : m->scalar ? ""
-                                : "lane_",
-                    (int)bytes, after + 1);
-        after += bytes + 2;
-    } else if (operation_text_is(word, length, "NEVH__L") ||
-               operation_text_is(word, length, "NEVH__H")) {
-        size_t bytes = strcspn(after, ")") - 1; /* NEVH__L(asinh) */
-        nevh__write(w, "%s%.*s", word[length - 1] == 'H' ? "nevh__" : "",
-                    (int)bytes, after + 1);
-        after += bytes + 2;
-    } else if (operation_text_is(word, length, "NEVH__G"))
-        nevh__write(w, "%s * ", m->g);
-    else if (operation_text_is(word, length, "NEVH__TWICE_G"))
-        nevh__write(w, "(2 * %s) * ", m->g);
-    else if (operation_text_is(word, length, "NEVH__THRICE_G"))
-        nevh__write(w, "(3 * %s) * ", m->g);
-    else if (operation_text_is(word, length, "NEVH__LN10"))
-        nevh__write(w, "2.302585092994045684");
-    else
+    if (write_name(w, word, length, m))
+        return after;
+    size_t i = operation_word(word, length, list);
+    if (!list[i]) {
         nevh__write(w, "%.*s", (int)length, word);
-    return after;
+        return after;
+    }
+    size_t bytes = strcspn(after, ")") - 1;
+    nevh__write(w, "%s%.*s", before[i], (int)bytes, after + 1);
+    return after + bytes + 2;
 }
 
 static void write_text(nevh__writer *w, const char *text,

@@ -49,25 +49,37 @@ static void take_line(renaming *r) {
     r->to += r->open[r->depth - 1].to;
 }
 
-static void take_character(renaming *r) {
-    char c = *r->from, next = r->from[1];
+/* Notes whether the character begins or ends a string or a comment. */
+static void take_quote(renaming *r, char c, char next) {
+    bool escaped = r->from > r->from_line && r->from[-1] == '\\';
     if (r->comment)
-        r->comment = !(c == '*' && next == '/');
-    else if (c == '"' && (r->from == r->from_line || r->from[-1] != '\\'))
+        r->comment = c != '*' || next != '/';
+    else if (c == '"' && !escaped)
         r->text = !r->text;
     else if (c == '/' && next == '*')
         r->comment = true;
+}
+
+static void take_open(renaming *r) {
+    if (r->depth < MOST_OPEN) {
+        r->open[r->depth].from = (size_t)(r->from - r->from_line);
+        r->open[r->depth].to = (size_t)(r->to - r->to_line);
+    }
+    r->depth++;
+}
+
+static void take_character(renaming *r) {
+    char c = *r->from;
+    take_quote(r, c, r->from[1]);
     *r->to++ = *r->from++;
-    if ((c == '(' || c == '{') && !r->text && !r->comment) {
-        if (r->depth < MOST_OPEN) {
-            r->open[r->depth].from = (size_t)(r->from - r->from_line);
-            r->open[r->depth].to = (size_t)(r->to - r->to_line);
-        }
-        r->depth++;
-    } else if ((c == ')' || c == '}') && !r->text && !r->comment && r->depth)
-        r->depth--;
-    else if (c == '\n')
+    if (c == '\n')
         take_line(r);
+    if (r->text || r->comment)
+        return;
+    if (c == '(' || c == '{')
+        take_open(r);
+    else if ((c == ')' || c == '}') && r->depth)
+        r->depth--;
 }
 
 void nevh__names_shorten(char *text) {
@@ -138,18 +150,29 @@ static bool is_of_use(char **lines, size_t i, size_t count) {
     return false;
 }
 
+/* True if the first line of a function, or of its declaration. */
+static bool begins_function(const char *line) {
+    return line && strncmp(line, "static ", 7) == 0 && strchr(line, '(') &&
+           !strchr(line, '=');
+}
+
+/* The first line from i on that has one of the characters, of those that are left;
+   count: none has. */
+static size_t line_with(char **lines, size_t i, size_t count,
+                        const char *characters) {
+    while (i < count && lines[i] && !strpbrk(lines[i], characters))
+        i++;
+    return i < count && lines[i] ? i : count;
+}
+
 /* The end of a function that begins at line i, or of its declaration alone; i: none
    begins there. */
 static size_t end_of_function(char **lines, size_t i, size_t count,
                               bool *declared_only) {
-    size_t end = i;
-    if (!lines[i] || strncmp(lines[i], "static ", 7) != 0 ||
-        !strchr(lines[i], '(') || strchr(lines[i], '='))
+    if (!begins_function(lines[i]))
         return i;
-    while (end < count && lines[end] && !strchr(lines[end], '{') &&
-           !strchr(lines[end], ';'))
-        end++;
-    if (end == count || !lines[end])
+    size_t end = line_with(lines, i, count, "{;");
+    if (end == count)
         return i;
     *declared_only = !strchr(lines[end], '{');
     if (*declared_only)
@@ -159,27 +182,37 @@ static size_t end_of_function(char **lines, size_t i, size_t count,
     return end < count ? end + 1 : i;
 }
 
-/* A function that no other line names goes, and the comment before it; whether it
-   went. */
-static bool drop_function(char **lines, size_t i, size_t count) {
-    bool declared_only, other_declared_only;
-    size_t end = end_of_function(lines, i, count, &declared_only);
-    if (end == i)
-        return false;
-    const char *name = strchr(lines[i], '('), *after = name;
-    if (strncmp(name, "(double t0", 10) == 0 ||
-        strncmp(name, "(double *t", 10) == 0) /* advance */
-        return false;
+/* True if a line other than those from i to end names the function; declarations
+   alone name it for a definition only. */
+static bool is_named(char **lines, size_t i, size_t end, size_t count,
+                     bool declared_only) {
+    const char *after = strchr(lines[i], '('), *name = after;
     while (name > lines[i] && is_word(name[-1]))
         name--;
     for (size_t k = 0; k < count; k++) {
+        bool other_declared_only;
         if ((k >= i && k < end) || !lines[k] ||
             !has_word(lines[k], name, (size_t)(after - name), true))
             continue;
         if (end_of_function(lines, k, count, &other_declared_only) == k ||
             !other_declared_only || declared_only)
-            return false;
+            return true;
     }
+    return false;
+}
+
+/* A function that no other line names goes, and the comment before it; whether it
+   went. */
+static bool drop_function(char **lines, size_t i, size_t count) {
+    bool declared_only;
+    size_t end = end_of_function(lines, i, count, &declared_only);
+    if (end == i)
+        return false;
+    const char *arguments = strchr(lines[i], '(');
+    bool advance = strncmp(arguments, "(double t0", 10) == 0 ||
+                   strncmp(arguments, "(double *t", 10) == 0;
+    if (advance || is_named(lines, i, end, count, declared_only))
+        return false;
     while (end > i)
         lines[--end] = NULL;
     bool comment = i > 0 && lines[i - 1] && strstr(lines[i - 1], "*/");

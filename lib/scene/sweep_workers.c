@@ -12,50 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WINDOW = 1 << 14 }; /* members that may wait */
-
-/* Results, under the lock. */
-
-static void tell(nevh_sweep *s, uint64_t member, nevh_member_status status,
-                 const char *message, const double values[]) {
-    nevh_sweep_result result = {member, status, message, values};
-    if (!s->stopped)
-        s->stopped = s->tell(s->data, &result) != 0;
-}
-
-static void tell_waiting(nevh_sweep *s) {
-    nevh__waiting *w;
-    uint64_t before = s->low;
-    while ((w = &s->waiting[s->low % WINDOW])->ready) {
-        if (w->status != NEVH_MEMBER_MISSING)
-            tell(s, s->low, w->status, w->message ? w->message : "", w->values);
-        free(w->message);
-        w->message = NULL;
-        w->ready = false;
-        s->low++;
-    }
-    if (s->low > before)
-        pthread_cond_broadcast(&s->moved);
-}
-
-static void hand_on(nevh_sweep *s, uint64_t member, nevh_member_status status,
-                    const char *message, const double values[]) {
-    pthread_mutex_lock(&s->lock);
-    if (!s->waiting) {
-        if (status != NEVH_MEMBER_MISSING)
-            tell(s, member, status, message, values);
-    } else {
-        nevh__waiting *w = &s->waiting[member % WINDOW];
-        w->ready = true;
-        w->status = status;
-        w->message = *message ? nevh__text("%s", message) : NULL;
-        if (values)
-            memcpy(w->values, values, s->columns * sizeof *values);
-        tell_waiting(s);
-    }
-    pthread_mutex_unlock(&s->lock);
-}
-
 void nevh__worker_finish(nevh__worker *w, uint64_t member,
                          const double varied[], nevh_member_status status,
                          const char *message, const double outcomes[]) {
@@ -64,7 +20,7 @@ void nevh__worker_finish(nevh__worker *w, uint64_t member,
     memcpy(w->values, varied, n * sizeof *varied);
     for (size_t k = n; k < s->columns; k++)
         w->values[k] = outcomes ? outcomes[k - n] : NAN;
-    hand_on(s, member, status, message, w->values);
+    nevh__sweep_hand_on(s, member, status, message, w->values);
 }
 
 /* Chunks. */
@@ -84,14 +40,9 @@ static bool goes_on(const nevh_sweep *s) {
     return !s->stopped && !s->ending;
 }
 
-/* True if one more chunk may wait for members before it. */
-static bool has_room(const nevh_sweep *s) {
-    return !s->waiting || s->next + NEVH__CHUNK <= s->low + WINDOW;
-}
-
 /* The end of the next chunk; where it begins, if none is to be taken now. */
 static uint64_t chunk_end(const nevh_sweep *s) {
-    if (!has_room(s) || !goes_on(s))
+    if (!nevh__sweep_window_has_room(s) || !goes_on(s))
         return s->next;
     return s->end - s->next < NEVH__CHUNK ? s->end : s->next + NEVH__CHUNK;
 }
@@ -100,7 +51,8 @@ static uint64_t chunk_end(const nevh_sweep *s) {
 static bool take_chunk(nevh__worker *w, bool may_wait) {
     nevh_sweep *s = w->sweep;
     pthread_mutex_lock(&s->lock);
-    while (may_wait && !has_room(s) && goes_on(s) && s->next < s->end)
+    while (may_wait && !nevh__sweep_window_has_room(s) && goes_on(s) &&
+           s->next < s->end)
         pthread_cond_wait(&s->moved, &s->lock);
     if (s->chunks && s->next == s->end && goes_on(s))
         ask_for_chunk(s);
@@ -112,7 +64,7 @@ static bool take_chunk(nevh__worker *w, bool may_wait) {
         if (!s->wanted || s->wanted(s->data, i))
             w->list[w->count++] = i;
         else if (s->waiting)
-            hand_on(s, i, NEVH_MEMBER_MISSING, "", NULL);
+            nevh__sweep_hand_on(s, i, NEVH_MEMBER_MISSING, "", NULL);
     w->group_end = w->count;
     return to > from;
 }
@@ -404,36 +356,6 @@ static void dismiss(nevh__worker *w) {
     nevh__variant_free(&w->scene);
 }
 
-static bool open_window(nevh_sweep *s) {
-    if (!s->is.ordered)
-        return true;
-    s->waiting = nevh__array(WINDOW, sizeof *s->waiting);
-    double *all = nevh__array(WINDOW * s->columns, sizeof *all);
-    if (!s->waiting || !all) {
-        free(all);
-        return false;
-    }
-    for (size_t i = 0; i < WINDOW; i++)
-        s->waiting[i].values = all + i * s->columns;
-    return true;
-}
-
-/* After a sweep that was stopped some wait for members that never came. */
-static void close_window(nevh_sweep *s) {
-    for (uint64_t i = 0; s->waiting && i < WINDOW; i++) {
-        nevh__waiting *w = &s->waiting[(s->low + i) % WINDOW];
-        if (w->ready && w->status != NEVH_MEMBER_MISSING)
-            tell(s, s->low + i, w->status, w->message ? w->message : "",
-                 w->values);
-    }
-    for (size_t i = 0; s->waiting && i < WINDOW; i++)
-        free(s->waiting[i].message);
-    if (s->waiting)
-        free(s->waiting[0].values);
-    free(s->waiting);
-    s->waiting = NULL;
-}
-
 void nevh_sweep_stop(nevh_sweep *s) {
     if (s)
         s->ending = 1;
@@ -448,7 +370,7 @@ static int run(nevh_sweep *s, nevh_wanted_fn wanted, nevh_sweep_fn tell_fn,
     s->by_lane = 0;
     size_t threads = s->is.threads;
     nevh__worker *all = nevh__array(threads, sizeof *all);
-    bool ready = all && open_window(s);
+    bool ready = all && nevh__sweep_window_open(s);
     for (size_t i = 0; ready && i < threads; i++)
         ready = equip(&all[i], s);
     for (size_t i = 1; ready && i < threads; i++)
@@ -461,7 +383,7 @@ static int run(nevh_sweep *s, nevh_wanted_fn wanted, nevh_sweep_fn tell_fn,
         dismiss(&all[i]);
     }
     free(all);
-    close_window(s);
+    nevh__sweep_window_close(s);
     if (!ready || s->failed)
         return nevh__no_memory(&s->report);
     bool ended = s->ending;

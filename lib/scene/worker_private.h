@@ -44,6 +44,16 @@ void nevh__worker_finish(nevh__worker *w, uint64_t member,
                          const double varied[], nevh_member_status status,
                          const char *message, const double outcomes[]);
 
+/* sweep_window.c.  Tells a result, or keeps it until those before it are told;
+   values: NULL of a member that is missing. */
+void nevh__sweep_hand_on(nevh_sweep *, uint64_t member, nevh_member_status,
+                         const char *message, const double values[]);
+/* False: out of memory. */
+bool nevh__sweep_window_open(nevh_sweep *);
+void nevh__sweep_window_close(nevh_sweep *);
+/* True if one more chunk may wait for members before it. */
+bool nevh__sweep_window_has_room(const nevh_sweep *);
+
 /* The variant with these values; NULL: those of the scene. */
 bool nevh__sweep_variant(nevh_sweep *s, const double varied[], nevh__variant *x,
                          nevh__report *report);

@@ -243,27 +243,39 @@ int nevh__parts_find(const nevh_system *s, bool fast[],
     return status ? status : any && !fault->term ? NEVH_OK : NEVH_ESTRUCT;
 }
 
+/* Instances of an effect's terms that are on, among the fast and among others; false:
+   there is no such effect. */
+static bool parts_count(const nevh_system *s, const char *effect,
+                        const bool fast[], size_t counts[2]) {
+    bool known = false;
+    for (size_t i = 0; effect && i < s->n_effects; i++)
+        known |= strcmp(s->effects[i].name, effect) == 0;
+    for (size_t i = 0; known && i < s->n_terms; i++) {
+        const nevh_term *decl = &s->terms[i]->decl;
+        if (nevh__term_on(s, s->terms[i]) && strcmp(decl->effect, effect) == 0)
+            counts[fast[i] ? 0 : 1] += decl->count;
+    }
+    return known;
+}
+
 int nevh_system_parts(const nevh_system *s, const char *effect, size_t *fast,
                       size_t *slow, const char **term) {
-    nevh__parts_fault fault;
+    nevh__parts_fault fault = {NULL, NULL};
     size_t counts[2] = {0, 0};
     int status = nevh_system_status(s);
     if (status)
         return status;
     bool *all = nevh__array(s->n_terms, sizeof *all), known = false;
     status = all ? nevh__parts_find(s, all, &fault) : NEVH_ENOMEM;
-    for (size_t i = 0; effect && i < s->n_effects; i++)
-        known |= strcmp(s->effects[i].name, effect) == 0;
-    for (size_t i = 0; status != NEVH_ENOMEM && known && i < s->n_terms; i++)
-        if (nevh__term_on(s, s->terms[i]) &&
-            strcmp(s->terms[i]->decl.effect, effect) == 0)
-            counts[all[i] ? 0 : 1] += s->terms[i]->decl.count;
+    if (status != NEVH_ENOMEM) {
+        known = parts_count(s, effect, all, counts);
+        if (term)
+            *term = fault.term ? fault.term->name : NULL;
+    }
     if (fast)
         *fast = counts[0];
     if (slow)
         *slow = counts[1];
-    if (term && status != NEVH_ENOMEM)
-        *term = fault.term ? fault.term->name : NULL;
     free(all);
     return status == NEVH_ENOMEM || known ? status : NEVH_EINVAL;
 }

@@ -202,49 +202,66 @@ static double room_above(const plot *p, const layout *l) {
            l->line;
 }
 
+/* The margins of a panel before the numbers at its axes are known. */
+static void set_margins(layout *l, const plot *p, const target *t) {
+    bool text = t->medium == PLOT_TEXT;
+    l->left = (text ? 9 : 12) * l->letter;
+    l->right = 3 * l->letter;
+    l->top = (text || has_headings(p) ? 1.8 : 0.7) * l->line;
+    l->top += l->narrow ? 1.3 * l->line : 0;
+    l->bottom = (text ? 3 : 3.7) * l->line;
+    if (p->stacked && !text)
+        l->bottom = 1.2 * l->line; /* numbers are below the last one */
+}
+
+static void set_panels(layout *l, const plot *p, const target *t) {
+    choose_panels(l, p, t);
+    l->left = room_beside(p, l, t);
+    if (t->medium == PLOT_TEXT || t->narrow)
+        choose_panels(l, p, t);
+    if (t->narrow) { /* other numbers at other sizes */
+        l->left = fmax(l->left, room_beside(p, l, t));
+        choose_panels(l, p, t);
+    }
+}
+
+static void set_title(layout *l, const plot *p, bool narrow) {
+    l->title_scale = title_scale(p, l);
+    l->title_lines = lines_of(p->title, title_letters(l),
+                              narrow ? NARROW_LINES : TITLE_LINES);
+    l->note_lines =
+        lines_of(p->note, note_letters(l), narrow ? NARROW_LINES : NOTE_LINES);
+    l->title = room_above(p, l);
+}
+
+/* legend: the height of all its lines. */
+static void set_height(layout *l, const plot *p, bool text, double legend) {
+    l->height = (l->top + l->panel_height + l->bottom) * (double)l->rows;
+    l->height += l->title + (p->stacked && !text ? 2.5 * l->line : 0);
+    if (l->narrow)
+        l->height += l->legend_height;
+    else
+        l->height = fmax(l->height, l->title + l->top + legend);
+    l->legend_apart = l->narrow || legend > l->panel_height;
+}
+
 layout plot_lay_out(const plot *p, const target *t) {
     bool text = t->medium == PLOT_TEXT;
     size_t longest, lines = legend_lines(p, &longest);
     layout l = {.letter = text ? 1 : 8, .line = text ? 1 : 18};
     double entry = text ? 1 : 26; /* of the legend */
     double legend = entry * (double)(lines + 1);
-    l.legend = lines ? l.letter * (double)(longest + 8) : 0;
+    l.narrow = t->narrow && !p->map.columns;
     if (p->map.columns)
         l.legend = 17 * l.letter; /* the scale of colours */
-    else if (t->narrow) {
-        l.narrow = true;
-        l.legend = 0;
-    }
-    l.left = (text ? 9 : 12) * l.letter;
-    l.right = 3 * l.letter;
-    l.top = (text || has_headings(p) ? 1.8 : 0.7) * l.line;
-    l.top += l.narrow ? 1.3 * l.line : 0;
-    l.bottom = (text ? 3 : 3.7) * l.line;
-    if (p->stacked && !text)
-        l.bottom = 1.2 * l.line; /* numbers are below the last one */
-    choose_panels(&l, p, t);
-    l.left = room_beside(p, &l, t);
-    if (text || t->narrow)
-        choose_panels(&l, p, t);
-    if (t->narrow) { /* other numbers at other sizes */
-        l.left = fmax(l.left, room_beside(p, &l, t));
-        choose_panels(&l, p, t);
-    }
+    else if (lines && !l.narrow)
+        l.legend = l.letter * (double)(longest + 8);
+    l.legend_height = l.narrow && lines ? legend : 0;
+    set_margins(&l, p, t);
+    set_panels(&l, p, t);
     l.width = (l.left + l.panel_width + l.right) * (double)l.columns + l.legend;
-    l.title_scale = title_scale(p, &l);
-    l.title_lines = lines_of(p->title, title_letters(&l),
-                             t->narrow ? NARROW_LINES : TITLE_LINES);
-    l.note_lines = lines_of(p->note, note_letters(&l),
-                            t->narrow ? NARROW_LINES : NOTE_LINES);
-    l.title = room_above(p, &l);
-    l.height = (l.top + l.panel_height + l.bottom) * (double)l.rows + l.title;
-    if (p->stacked && !text)
-        l.height += 2.5 * l.line;
-    if (l.narrow)
-        l.height += l.legend_height = lines ? legend : 0;
-    else
-        l.height = fmax(l.height, l.title + l.top + legend);
-    l.legend_apart = l.narrow || legend > l.panel_height;
+    set_title(&l, p, t->narrow);
+    set_height(&l, p, text, legend);
     l.width = ceil(l.width); /* gnuplot takes whole pixels */
     l.height = ceil(l.height);
     return l;

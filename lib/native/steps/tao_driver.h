@@ -49,6 +49,38 @@ take_first(const nevh__steps_call *c, const double *N, const nevh__number *y,
 }
 #endif
 
+/* Changes where a step begins, none and those of the second copy, and the slopes. */
+NEVH__INLINE void tao_open(const nevh__number *kept, nevh__number *moved,
+                           nevh__number *slopes) {
+    NEVH__EACH(k, 1, 2 * DOF) {
+        moved[k] = (nevh__number){0};
+        moved[2 * DOF + k] = kept[k];
+        slopes[k] = kept[2 * DOF + k];
+    }
+}
+
+/* The state where it ends, and what is kept; returns 0 if all is finite. */
+NEVH__INLINE nevh__number tao_close(nevh__number bad, const nevh__number *moved,
+                                    const nevh__number *slopes, nevh__number *y,
+                                    nevh__number *lost, nevh__number *kept) {
+    NEVH__EACH(k, 1, 2 * DOF) {
+        nevh__number change = moved[k] + lost[k], next = y[k] + change;
+        bad += (next - next) + (moved[2 * DOF + k] - moved[2 * DOF + k]);
+        lost[k] = nevh__roundoff(next, y[k], change);
+        y[k] = next;
+    }
+#ifdef NEVH__FOR_READERS
+    if (bad != 0)
+        return bad;
+    kept[4 * DOF] = 1;
+#endif
+    NEVH__EACH(k, 1, 2 * DOF) {
+        kept[k] = moved[2 * DOF + k];
+        kept[2 * DOF + k] = slopes[k];
+    }
+    return bad;
+}
+
 /* A step of the state y, q and then p, and of the second copy.  Returns 0 if all is
    finite.  W: h, and what tao_prepare makes of it. */
 NEVH__INLINE nevh__number
@@ -76,11 +108,7 @@ step_copies(NEVH__COMPILED(const double *N, ) double *W, double t, double h,
     if (W[0] != h)
         nevh__tao_prepare(PARTS / 2, WEIGHTS, OMEGA, h, W + 1);
     W[0] = h;
-    NEVH__EACH(k, 1, 2 * DOF) {
-        moved[k] = (nevh__number){0};
-        moved[2 * DOF + k] = kept[k];
-        slopes[k] = kept[2 * DOF + k];
-    }
+    tao_open(kept, moved, slopes);
 #ifdef NEVH__FOR_READERS
     if (kept[4 * DOF] == 0) {
         nevh__tao_place(&z, &z.a, z.q, z.y);
@@ -88,22 +116,7 @@ step_copies(NEVH__COMPILED(const double *N, ) double *W, double t, double h,
     }
 #endif
     nevh__tao_take(&z, t);
-    NEVH__EACH(k, 1, 2 * DOF) {
-        nevh__number change = moved[k] + lost[k], next = y[k] + change;
-        bad += (next - next) + (moved[2 * DOF + k] - moved[2 * DOF + k]);
-        lost[k] = nevh__roundoff(next, y[k], change);
-        y[k] = next;
-    }
-#ifdef NEVH__FOR_READERS
-    if (bad != 0)
-        return bad;
-    kept[4 * DOF] = 1;
-#endif
-    NEVH__EACH(k, 1, 2 * DOF) {
-        kept[k] = moved[2 * DOF + k];
-        kept[2 * DOF + k] = slopes[k];
-    }
-    return bad;
+    return tao_close(bad, moved, slopes, y, lost, kept);
 }
 
 #ifdef NEVH__FOR_READERS
