@@ -295,6 +295,7 @@ EXTRA_DIST += \
 	tests/support/memory.h \
 	tests/support/native.h \
 	tests/support/nevh_interrupt.sh \
+	tests/support/nevh_command.sh \
 	tests/support/nevh_support.sh \
 	tests/support/rescale.awk \
 	tests/support/scene.h \

@@ -307,80 +307,92 @@ static int complete_kept(nevh_work *w, double t, const double q[],
     return status;
 }
 
-/* A step of `width` orbits with n coordinates, in rows of `stride`. */
-NEVH__INLINE int step_along(nevh_work *w, gradient_way way, size_t n,
-                            size_t width, size_t stride, size_t lanes, double t,
+/* `width` orbits with n coordinates, in rows of `stride`, `lanes` in a vector. */
+typedef struct {
+    size_t n, width, stride, lanes;
+} orbits;
+
+/* The gradients that a step took, and whose last slopes are now kept. */
+NEVH__INLINE void count_slopes(nevh_work *w, const orbits *x, const memory *m,
+                               bool had_kept, bool counts) {
+    const splitting_plan *o = w->plan;
+    if (counts)
+        w->field->gradients +=
+            (o->kicks - (had_kept && o->scheme.kicks_first)) * x->width;
+    for (size_t lane = 0; o->scheme.keeps && lane < x->width; lane++)
+        m->has_kept[lane] = 1;
+}
+
+NEVH__INLINE int step_along(nevh_work *w, gradient_way way, orbits x, double t,
                             double h, double q[], double p[]) {
     const splitting_plan *o = w->plan;
     double *from = way == BY_WORK ? o->by_work : o->from;
-    memory m = recall(w, n * width);
-    bool copied = way == BY_VECTOR && stride != width;
-    bool has_kept = o->scheme.keeps && all_kept(width, &m);
-    int status = o->scheme.keeps && !has_kept && width > 1
+    memory m = recall(w, x.n * x.width);
+    bool copied = way == BY_VECTOR && x.stride != x.width;
+    bool has_kept = o->scheme.keeps && all_kept(x.width, &m);
+    int status = o->scheme.keeps && !has_kept && x.width > 1
                      ? complete_kept(w, t, q, p, &has_kept)
                      : NEVH_OK;
     if (status)
         return status;
-    rows r = copied ? lay_out(n * stride, true, from)
-                    : bind(n * stride, from, &m, q, p);
-    struct nevh__splitting_owner owner = {w, o, stride, r.time};
-    nevh__splitting_step x = {.t = t,
-                              .h = h,
-                              .scheme = &o->scheme,
-                              .has_kept = has_kept,
-                              .q = r.q,
-                              .p = r.p,
-                              .slope = r.slope,
-                              .kept = r.kept,
-                              .owner = &owner};
+    rows r = copied ? lay_out(x.n * x.stride, true, from)
+                    : bind(x.n * x.stride, from, &m, q, p);
+    struct nevh__splitting_owner owner = {w, o, x.stride, r.time};
+    nevh__splitting_step step = {.t = t,
+                                 .h = h,
+                                 .scheme = &o->scheme,
+                                 .has_kept = has_kept,
+                                 .q = r.q,
+                                 .p = r.p,
+                                 .slope = r.slope,
+                                 .kept = r.kept,
+                                 .owner = &owner};
     if (copied)
-        load_all(w, stride, &r, &m, q, p, x.has_kept);
-    status = nevh__splitting_take(&x, way, lanes, n * stride);
+        load_all(w, x.stride, &r, &m, q, p, has_kept);
+    status = nevh__splitting_take(&step, way, x.lanes, x.n * x.stride);
     if (status == NEVH__SPLITTING_RANGE)
         return way == BY_WORK ? fail(w) : NEVH_EDOM;
     if (status)
         return status;
     if (copied)
-        store_all(w, stride, &r, &m, q, p, o->scheme.keeps);
-    if (way != BY_WORK)
-        w->field->gradients +=
-            (o->kicks - (x.has_kept && o->scheme.kicks_first)) * width;
-    for (size_t lane = 0; o->scheme.keeps && lane < width; lane++)
-        m.has_kept[lane] = 1;
+        store_all(w, x.stride, &r, &m, q, p, o->scheme.keeps);
+    count_slopes(w, &x, &m, step.has_kept, way != BY_WORK);
     return NEVH_OK;
 }
 
 NEVH__ONE_BY_ONE static int step_point(nevh_work *w, double t, double h,
                                        double q[], double p[]) {
-    return step_along(w, BY_POINT, 1, 1, 1, 1, t, h, q, p);
+    return step_along(w, BY_POINT, (orbits){1, 1, 1, 1}, t, h, q, p);
 }
 
 NEVH__ONE_BY_ONE static int step_points_of_two(nevh_work *w, double t, double h,
                                                double q[], double p[]) {
-    return step_along(w, BY_POINT, 2, 1, 1, 1, t, h, q, p);
+    return step_along(w, BY_POINT, (orbits){2, 1, 1, 1}, t, h, q, p);
 }
 
 NEVH__ONE_BY_ONE static int step_points(nevh_work *w, double t, double h,
                                         double q[], double p[]) {
-    return step_along(w, BY_POINT, w->n, 1, 1, 1, t, h, q, p);
+    return step_along(w, BY_POINT, (orbits){w->n, 1, 1, 1}, t, h, q, p);
 }
 
 NEVH__ONE_BY_ONE static int step_number(nevh_work *w, double t, double h,
                                         double q[], double p[]) {
-    return w->n == 1 ? step_along(w, BY_NUMBER, 1, 1, 1, 1, t, h, q, p)
-                     : step_along(w, BY_NUMBER, w->n, 1, 1, 1, t, h, q, p);
+    return w->n == 1
+               ? step_along(w, BY_NUMBER, (orbits){1, 1, 1, 1}, t, h, q, p)
+               : step_along(w, BY_NUMBER, (orbits){w->n, 1, 1, 1}, t, h, q, p);
 }
 
 NEVH_SIMD static int step_vectors(nevh_work *w, double t, double h, double q[],
                                   double p[]) {
-    return step_along(w, BY_VECTOR, w->n, w->width,
-                      ((const splitting_plan *)w->plan)->stride, NEVH__LANES, t,
-                      h, q, p);
+    const splitting_plan *o = w->plan;
+    orbits x = {w->n, w->width, o->stride, NEVH__LANES};
+    return step_along(w, BY_VECTOR, x, t, h, q, p);
 }
 
 NEVH_SIMD static int step_by_work(nevh_work *w, double t, double h, double q[],
                                   double p[]) {
-    return step_along(w, BY_WORK, w->n, w->width, w->width, 1, t, h, q, p);
+    orbits x = {w->n, w->width, w->width, 1};
+    return step_along(w, BY_WORK, x, t, h, q, p);
 }
 
 static int step(nevh_work *w, double t, double h, double q[], double p[]) {

@@ -2,11 +2,12 @@
 # The worksheets: each command runs, and each number is what its command prints.
 
 srcdir=${srcdir:-.}
+. "$srcdir/tests/support/nevh_command.sh"
 work=sheets-test.$$
 trap 'rm -rf $work' EXIT
 trap 'exit 1' HUP INT TERM
 mkdir -p $work/doc/sheets || exit 1
-sh "$srcdir/doc/sheets/sheets.sh" "$srcdir" ./tools/nevh examples check || exit 1
+sh "$srcdir/doc/sheets/sheets.sh" "$srcdir" "$nevh" examples check || exit 1
 
 # Where TeX is, nothing is wider than the page.
 if command -v texi2pdf >/dev/null 2>&1 && command -v pdftex >/dev/null 2>&1; then
@@ -31,7 +32,7 @@ printf '@node Sheet 1\n@set pendulum pendulum\n@set dt 0.05\n@example\nnevh list
 printf '@value{rk-twenty} and @value{first-p}; @value{rk-twenty}\n' \
     >$work/doc/sheets/answers.texi
 ln -s "$(cd "$srcdir" && pwd)/scenes" $work/scenes
-sh "$srcdir/doc/sheets/sheets.sh" $work ./tools/nevh examples check >$work/out &&
+sh "$srcdir/doc/sheets/sheets.sh" $work "$nevh" examples check >$work/out &&
     { echo "a wrong number was not found"; exit 1; }
 grep -q "rk-twenty: the sheets say '1.6e-04'" $work/out || exit 1
 grep -q "first-p is shown, and not measured" $work/out || exit 1

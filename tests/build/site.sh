@@ -8,8 +8,9 @@ work=site-test.$$ top=$PWD
 trap 'cd "$top" && rm -rf $work' EXIT
 trap 'exit 1' HUP INT TERM
 mkdir $work || exit 1
+. "$srcdir/tests/support/nevh_command.sh"
 makeinfo --version >/dev/null 2>&1 || { echo "there is no makeinfo"; exit 77; }
-MAKEINFO=makeinfo sh "$srcdir/doc/site/site.sh" "$srcdir" ./tools/nevh $work/site ||
+MAKEINFO=makeinfo sh "$srcdir/doc/site/site.sh" "$srcdir" "$nevh" $work/site ||
     { echo "site.sh fails"; exit 1; }
 cd $work/site || exit 1
 

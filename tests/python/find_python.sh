@@ -20,8 +20,9 @@ done
 test -n "$python" || { echo "there is no Python 3"; exit 77; }
 
 NEVH_LIBRARY=$library
-NEVH_COMMAND=${NEVH:-$PWD/tools/nevh}
-test "${NEVH_COMMAND#/}" != "$NEVH_COMMAND" || NEVH_COMMAND=$PWD/$NEVH_COMMAND
+. "$srcdir/tests/support/nevh_command.sh"
+NEVH_COMMAND=$nevh
+test "${nevh#/}" != "$nevh" || NEVH_COMMAND=$PWD/$nevh
 top=$(CDPATH= cd "$srcdir" && pwd)
 NEVH_SCENES=$top/scenes
 PYTHONPATH=$top/python

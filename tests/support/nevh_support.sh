@@ -4,15 +4,7 @@
 srcdir=${srcdir:-.}
 NEVH_SCENES=$srcdir/scenes
 export NEVH_SCENES
-nevh=${NEVH:-./tools/nevh}
-# Without libtool's script, which takes ten times as long as a short command, and
-# would be interrupted, too.
-if test -z "$NEVH" && LD_LIBRARY_PATH=$PWD/.libs ./tools/.libs/nevh --version \
-    >/dev/null 2>&1; then
-    LD_LIBRARY_PATH=$PWD/.libs${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
-    export LD_LIBRARY_PATH
-    nevh=./tools/.libs/nevh
-fi
+. "$srcdir/tests/support/nevh_command.sh"
 limit=
 command -v timeout >/dev/null 2>&1 &&
     limit="timeout ${CK_DEFAULT_TIMEOUT:-600}"
