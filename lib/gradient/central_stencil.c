@@ -189,13 +189,12 @@ NEVH__INLINE bool add_one(const nevh_field *f, const nevh__term_part *part,
 
 typedef enum { ONE, VECTORS, LANES } layout;
 
-/* A block of the points of all lanes from `lane` on, their values, and the
-   slopes; whether all are finite. */
-NEVH__INLINE bool take(nevh_field *f, const nevh__term_part *part,
-                       const nevh__places *at, size_t lane, layout shape) {
+/* The points of all variables, of all lanes from `lane` on. */
+NEVH__INLINE void place_points(nevh_field *f, const nevh__term_part *part,
+                               const nevh__places *at, size_t lane,
+                               layout shape) {
     const nevh__stencil *s = part->stencil;
-    nevh__planned *term = part->term;
-    const nevh_term *decl = &term->term->decl;
+    const nevh__planned *term = part->term;
     size_t used = s->points * part->lanes;
     double *row = f->rows;
     for (size_t k = 0; k < term->nv; k++, row += part->stride) {
@@ -203,7 +202,7 @@ NEVH__INLINE bool take(nevh_field *f, const nevh__term_part *part,
         const double *shift = s->shift + k * s->padded;
         const size_t *source = s->source + k * s->padded;
         if (shape == ONE)
-            shift_one(s, decl->count == 1, x, source, shift, row);
+            shift_one(s, term->term->decl.count == 1, x, source, shift, row);
         else if (shape == VECTORS)
             shift_vectors(s, part->lanes, at->width, x, source, shift, row);
         else
@@ -213,11 +212,21 @@ NEVH__INLINE bool take(nevh_field *f, const nevh__term_part *part,
         for (size_t i = used; shape == LANES && i < part->stride; i++)
             row[i] = row[0];
     }
-    for (size_t i = 0; decl->time && i < part->stride; i++)
+}
+
+/* A block of the points of all lanes from `lane` on, their values, and the
+   slopes; whether all are finite. */
+NEVH__INLINE bool take(nevh_field *f, const nevh__term_part *part,
+                       const nevh__places *at, size_t lane, layout shape) {
+    nevh__planned *term = part->term;
+    bool time = term->term->decl.time;
+    size_t used = part->stencil->points * part->lanes;
+    place_points(f, part, at, lane, shape);
+    for (size_t i = 0; time && i < part->stride; i++)
         f->times[i] = at->t[lane + (shape == ONE ? 0 : i % part->lanes)];
     const double *c = part->pitch ? part->c + lane * part->pitch : part->c;
     nevh__term_values(term->term, f->portable, part->stride, used,
-                      decl->time ? f->times : f->zeros, f->rows,
+                      time ? f->times : f->zeros, f->rows,
                       f->rows + term->nq * part->stride, c, f->h, f->one);
     term->values += used;
     return shape == ONE       ? add_one(f, part, at, lane)
