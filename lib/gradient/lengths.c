@@ -14,6 +14,8 @@ static const double not_quadratic = 0.2;
 static const double out_of_reach = 0x1p-26;
 enum { FARTHEST = 400, LEAP = 8 }; /* powers of two from the first guess */
 enum { FEWEST_AHEAD = 2, MOST_AHEAD = 30 }; /* distances at once */
+/* Doublings over which H is a power of the distance, or constant: it is so beyond. */
+enum { POWERS = 100 };
 enum { NEARER = 3, NEAREST = 24 }; /* below a distance that may be periods */
 static const double as_much = 0.125;
 static const double overflowing = 0x1p500;
@@ -205,23 +207,27 @@ static bool is_overflow(const variation *v, double times) {
    Several are asked for at once, the more the longer it takes. */
 static double double_up(const nevh__axis *a, double distance,
                         const variation *here, int most) {
-    variation v[MOST_AHEAD];
+    variation v[MOST_AHEAD], last = *here;
     size_t ahead = FEWEST_AHEAD;
     double whole = here->whole, first = distance;
+    int powers = 0;
     bool seen = whole > here->rounding;
     for (int done = 0; done < most;
          ahead = 2 * ahead < MOST_AHEAD ? 2 * ahead : MOST_AHEAD) {
         vary_on(a, 2 * distance, ahead, v);
         for (size_t i = 0; i < ahead && done < most; i++, done++) {
-            if (!(whole < overflowing))
-                return seen ? INFINITY : NAN;
             seen |= v[i].whole > v[i].rounding;
-            if (is_overflow(&v[i], distance / first))
+            if (!(whole < overflowing) || is_overflow(&v[i], distance / first))
                 return seen ? INFINITY : NAN;
             if (too_far(&v[i]))
                 return distance;
+            bool still = v[i].whole == 0 && last.whole == 0;
+            powers = still || lengths_alike(&last, &v[i]) ? powers + 1 : 0;
+            if (powers == POWERS)
+                return seen ? INFINITY : NAN;
             distance *= 2;
             whole = v[i].whole;
+            last = v[i];
         }
     }
     return seen ? INFINITY : NAN;
