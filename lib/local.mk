@@ -215,6 +215,8 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/energy_book_private.h \
 	lib/diagnose/energy_scale.c \
 	lib/diagnose/energy_state_private.h \
+	lib/diagnose/kinks_private.h \
+	lib/diagnose/kinks.c \
 	lib/diagnose/theory.c \
 	lib/diagnose/passage_private.h \
 	lib/diagnose/passage.c \

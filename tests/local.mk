@@ -78,6 +78,7 @@ suites = \
 	tests/diagnose/check_chaos \
 	tests/diagnose/check_confirm \
 	tests/diagnose/check_shadow \
+	tests/diagnose/check_kinks \
 	tests/diagnose/check_verdict \
 	tests/diagnose/check_loop \
 	tests/diagnose/check_frequencies \

@@ -5,6 +5,7 @@
    alone.  Its functions that the library refers to end in an error here, which
    the library tells as it tells GSL's own.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "diagnose/kinks_private.h"
 #include "diagnose/passage_private.h"
 #include "ensemble/outcomes/outcome_private.h"
 #include "gradient/step_selection_private.h"
@@ -195,4 +196,9 @@ void nevh__passage_keep(nevh__passage *s, double t, const double q[],
 void nevh__passage_look(nevh__passage *s, double t, const double q[],
                         const double p[]) {
     (void)s, (void)t, (void)q, (void)p;
+}
+bool nevh__kink_between(nevh_field *f, double t, const double from[],
+                        const double to[], double largest, double room[]) {
+    (void)f, (void)t, (void)from, (void)to, (void)largest, (void)room;
+    return false;
 }

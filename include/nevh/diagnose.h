@@ -91,9 +91,9 @@ typedef enum {
                           energy, H autonomous [Hairer, Lubich, Wanner,
                           Geometric Numerical Integration, chapter IX] */
     NEVH_THEORY_LOSES, /* a drift: each step adds its error */
-    NEVH_THEORY_ROUGH  /* nothing, where it would be KEEPS: formulas with abs,
-                          min, max, sign, floor or mod of coordinates or momenta
-                          have kinks or jumps, and no modified energy is known */
+    NEVH_THEORY_ROUGH  /* nothing, where it would be KEEPS: formulas have kinks or
+                          jumps, as of abs or floor, or values of H, also of terms
+                          in C, show some where the orbit goes */
 } nevh_theory;
 
 /* Errors are of H(t) - H(0), or of the balance, relative to `scale`: |H0|

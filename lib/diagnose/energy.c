@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/field_private.h"
 #include "diagnose/energy_state_private.h"
+#include "diagnose/kinks_private.h"
 #include "run/stepper_private.h"
 #include <float.h>
 #include <math.h>
@@ -27,7 +28,10 @@ static void energy_lay_out(nevh__arena *a, void *energy) {
     e->started = nevh__arena_take(a, width, sizeof *e->started);
     e->sums = nevh__arena_take(a, 3 * width, sizeof(double));
     e->effects = nevh__arena_take(a, effects, sizeof(double));
-    e->state = nevh__arena_take(a, 2 * n, sizeof(double));
+    e->state = nevh__arena_take(a, 4 * n, sizeof(double));
+    e->marked = nevh__arena_take(a, 2 * n * width, sizeof(double));
+    e->mark = nevh__arena_take(a, width, sizeof *e->mark);
+    e->kinks = nevh__arena_take(a, width, sizeof *e->kinks);
     e->booking = nevh__arena_take(a, 3 * n, sizeof(double));
 }
 
@@ -133,6 +137,8 @@ int nevh_energy_expect(nevh_energy *e, const nevh_stepper *s) {
     if (status)
         return status;
     e->theory = nevh__theory_of(s);
+    e->searches =
+        e->theory == NEVH_THEORY_KEEPS && nevh__theory_doubts(s->work.system);
     for (size_t lane = 0; lane < e->width; lane++)
         expect_in(e, lane, s);
     return NEVH_OK;
@@ -209,9 +215,28 @@ static bool is_time_to_look(nevh_energy *e, size_t lane) {
                nevh__energy_higher * e->seen[lane];
 }
 
+/* For kinks between this state and one an eighth of the time ago. */
+static void search_kinks(nevh_energy *e, size_t lane, const double q[],
+                         const double p[]) {
+    size_t n = e->n, samples = e->trend[lane].samples;
+    double *before = e->marked + 2 * n * lane;
+    if (!e->searches || e->only_largest ||
+        samples < e->mark[lane] + e->mark[lane] / 8)
+        return;
+    energy_gather(e, lane, q, p);
+    if (e->mark[lane] &&
+        nevh__kink_between(e->field, e->t[lane], before, e->state,
+                           e->largest[lane], e->state + 2 * n))
+        e->kinks[lane]++;
+    memcpy(before, e->state, 2 * n * sizeof *before);
+    e->mark[lane] = samples;
+}
+
 /* Some hundred times in a run of any length. */
-static void look_again_later(nevh_energy *e, size_t lane) {
+static void look_again_later(nevh_energy *e, size_t lane, const double q[],
+                             const double p[]) {
     size_t samples = e->trend[lane].samples;
+    search_kinks(e, lane, q, p);
     if (samples >= e->next_look[lane])
         e->next_look[lane] = samples + samples / 64 + 1;
 }
@@ -302,7 +327,7 @@ static int observe_lane(nevh_energy *e, size_t lane, size_t step,
     int status = add_state(e, lane, step, q, p);
     if (!status && is_time_to_look(e, lane))
         status = energy_look(e, lane, e->t[lane], q, p);
-    look_again_later(e, lane);
+    look_again_later(e, lane, q, p);
     return status;
 }
 
@@ -348,7 +373,7 @@ static void look_at_lanes(nevh_energy *e, bool on[], const double q[],
             take_size(e, lane, size[lane]);
         else
             on[lane] = !energy_look(e, lane, e->t[lane], q, p);
-        look_again_later(e, lane);
+        look_again_later(e, lane, q, p);
     }
 }
 
@@ -373,6 +398,7 @@ void nevh__energy_restart(nevh_energy *e, size_t lane) {
     e->started[lane] = false;
     e->largest[lane] = e->seen[lane] = 0;
     e->steps[lane] = e->next_look[lane] = 0;
+    e->mark[lane] = e->kinks[lane] = 0;
     e->trend[lane] = (nevh__trend){0};
     e->book.booked = e->book.came = e->missed = 0;
 }
@@ -400,7 +426,7 @@ nevh_energy_report nevh_energy_result(const nevh_energy *e, size_t lane) {
         nevh__trend_multiply(&trend, e->scale[lane] / scale);
     report.initial = e->initial[lane];
     report.scale = scale;
-    report.theory = e->theory;
+    report.theory = e->kinks[lane] > 1 ? NEVH_THEORY_ROUGH : e->theory;
     report.limit = fmax(1, e->limit[lane] / scale);
     report.met = e->largest[lane] / scale;
     if (e->theory == NEVH_THEORY_OPEN)

@@ -37,5 +37,8 @@ void nevh__energy_restart(nevh_energy *, size_t lane);
 
 /* The energy error that theory predicts for the steps of that stepper, planned. */
 nevh_theory nevh__theory_of(const nevh_stepper *);
+/* True if terms are functions in C, or formulas that may have kinks without such
+   operations, as sqrt(x^2): only values tell. */
+bool nevh__theory_doubts(const nevh_system *);
 
 #endif

@@ -60,7 +60,8 @@ typedef struct {
 /* True if the error is level over so many lengths: a random walk would be above
    that many times the run's own error by now, at least half of the time.  A large
    one may be that of chaos among long steps, and is level where it stays as it is.
-   Also true if the longer run explored more, and is level since. */
+   Also true if the longer run explored more, and is level since: not where kinks leave
+   no energy that is kept. */
 static bool is_confirmed(const longer_run *l, double times) {
     static const double slow = 2.5, level = 1.3, few = 16, many = 256;
     static const double coarse = 0.03;                    /* of the limit */
@@ -73,7 +74,8 @@ static bool is_confirmed(const longer_run *l, double times) {
            r->max <= l->own * (l->own > coarse * r->limit
                                    ? level
                                    : fmax(2, sqrt(times) / slow)) ||
-           (r->max <= level * r->early && times >= few) ||
+           (r->max <= level * r->early && times >= few &&
+            r->theory != NEVH_THEORY_ROUGH) ||
            (ended && times >= many);
 }
 

@@ -203,6 +203,17 @@ bool nevh__tape_breaks(const nevh__tape *tape) {
     return false;
 }
 
+bool nevh__tape_touches(const nevh__tape *tape) {
+    for (size_t i = 0; i < tape->length; i++) {
+        const nevh__instruction *c = &tape->code[i];
+        bool edges = nevh__operation_of(c->operation)->edge ||
+                     c->operation == NEVH__ATAN2 || c->operation == NEVH__POWER;
+        if (edges && ((c->a.by | c->b.by) & (NEVH__BY_Q | NEVH__BY_P)))
+            return true;
+    }
+    return false;
+}
+
 static void note_read(nevh__tape *tape, nevh__tape_operand o) {
     if (o.kind < NEVH__VARIABLES)
         tape->read[o.kind][o.at] = true;

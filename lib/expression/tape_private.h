@@ -136,6 +136,8 @@ void nevh__tape_free(nevh__tape *);
 bool nevh__tape_reads(const nevh__tape *, nevh__variable, size_t k);
 /* True if an operation of coordinates or momenta has kinks or jumps. */
 bool nevh__tape_breaks(const nevh__tape *);
+/* True if other operations of them may have: at the edges of sqrt, hypot, acos ... */
+bool nevh__tape_touches(const nevh__tape *);
 /* One more than the largest k that the builder was asked for, read or not: what
    a term must declare as nq, np, nc. */
 size_t nevh__tape_count(const nevh__tape *, nevh__variable);

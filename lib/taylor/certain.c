@@ -32,6 +32,9 @@ struct nevh_certain {
     nevh_timing *timing; /* from t0 until `seen`; NULL: H reads no time */
     double seen;
     nevh__wide t0, *start;
+    nevh__wide
+        *other; /* of the coarse run: some roundings away where the start is
+                          computed, as pi is, and no double */
 };
 
 /* So many digits pairs may do for. */
@@ -54,11 +57,12 @@ static int certain_start(nevh_certain *c, orbit *o, bool pairs,
             : nevh__series_orbit_init_quad(&o->quad, c->recurrence, tolerance);
     o->dd.timing = o->quad.timing = c->timing;
     o->dd.backward = o->quad.backward = c->seen < (double)c->t0;
-    return !fine      ? nevh__no_memory(&c->report)
-           : o->pairs ? nevh__series_orbit_start_dd(&o->dd, c->t0, c->start,
-                                                    &c->report)
-                      : nevh__series_orbit_start_quad(&o->quad, c->t0, c->start,
-                                                      &c->report);
+    const nevh__wide *start = o == &c->coarse ? c->other : c->start;
+    return !fine ? nevh__no_memory(&c->report)
+           : o->pairs
+               ? nevh__series_orbit_start_dd(&o->dd, c->t0, start, &c->report)
+               : nevh__series_orbit_start_quad(&o->quad, c->t0, start,
+                                               &c->report);
 }
 
 static int go(nevh_certain *c, orbit *o, nevh__wide t) {
@@ -95,9 +99,20 @@ static void shorten_first(orbit *o) {
         o->quad.reach /= 2;
 }
 
+/* Steps alone round nothing at an equilibrium, such as x = pi. */
+static void round_start(nevh_certain *c, bool pairs) {
+    double by = ldexp(1, pairs ? -103 : -110);
+    for (size_t k = 0; k < 2 * c->n; k++) {
+        bool given = (double)c->start[k] == c->start[k];
+        c->other[k] = given ? c->start[k] : c->start[k] * (1 + (nevh__wide)by);
+        by = -by;
+    }
+}
+
 static int start_both(nevh_certain *c, bool pairs) {
     /* Errors of some hundred series add up. */
     double tolerance = pow(10, -c->digits - 4), finest = 2e-33;
+    round_start(c, pairs);
     int status =
         certain_start(c, &c->coarse, pairs, fmax(tolerance, 10 * finest));
     if (status)
@@ -121,9 +136,10 @@ static int certain_make(nevh_certain *c, const nevh_system *system,
                           "%d digits: there are 1 to %d", c->digits,
                           MOST_DIGITS);
     c->n = n;
-    c->start = nevh__array(2 * n, sizeof *c->start);
+    c->start = nevh__array(4 * n, sizeof *c->start);
     if (!c->start)
         return nevh__no_memory(&c->report);
+    c->other = c->start + 2 * n;
     memcpy(c->start, from->q, n * sizeof *c->start);
     memcpy(c->start + n, from->p, n * sizeof *c->start);
     c->t0 = from->t;

@@ -110,6 +110,14 @@ awk -F, 'NR > 1 && $4 < 20 { fewer++ } END { exit fewer != 4 }' $work/out ||
 exits 0 reference kepler --at 1 --digits 5 --format csv --quiet
 awk -F, 'NR > 1 && length($3) > 9 { exit 1 }' $work/out || fails 'has more digits'
 
+# At an equilibrium steps round nothing: the rounding of the start alone grows.
+scene upright 'x = pi' 'p_x^2/2 - cos(x)'
+exits 0 reference $work/upright.nevh --at 1,60 --format csv --quiet
+has '^1,x,3.14159265358979323846264,24,'
+has '^60,p_x,,0,'
+awk -F, '$1 == 60 && $2 == "x" && $4 <= 8 { found = 1 } END { exit !found }' $work/out ||
+    fails 'is certain of rounding'
+
 # What is refused.
 exits 2 reference pendulum --digits 31
 says '1 to 30'

@@ -1,0 +1,106 @@
+/* nevh: kinks and jumps of H where an orbit goes.
+
+   Of functions in C, and of formulas such as sqrt(x^2), nothing but values tells.
+   A line between two states of the orbit is halved again and again, always to the
+   half with the larger third difference.  Of a smooth H these become 8 times smaller
+   each time, of one whose second derivative jumps 4 times, and 2 times at a kink.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "diagnose/kinks_private.h"
+#include <fenv.h>
+#include <float.h>
+#include <math.h>
+
+enum { MOST_HALVES = 36, COMPARED = 4, POINTS = 7 };
+/* Third differences, over those COMPARED halves before: between 2^-12 and 2^-8. */
+static const double smooth = 0x1p-10;
+static const double resolved = 0x1p10; /* units of rounding */
+
+typedef struct {
+    nevh_field *field;
+    double t, *state; /* 2n */
+    const double *from, *to;
+    double value[POINTS],
+        size;        /* the sum of the terms' |values|: the largest */
+    double rounding; /* of values, and of places */
+} line;
+
+/* H without constants; NaN: not finite. */
+static double value_at(line *l, double part) {
+    size_t n = l->field->n;
+    double h, roundoff, size;
+    for (size_t k = 0; k < 2 * n; k++)
+        l->state[k] = l->from[k] + part * (l->to[k] - l->from[k]);
+    if (nevh__field_moving_values(l->field, 1, &l->t, l->state, l->state + n,
+                                  &h, &roundoff, &size))
+        return NAN;
+    l->size = fmax(l->size, size);
+    return h;
+}
+
+/* The largest of n values, over the largest difference. */
+static double farness(size_t n, const double from[], const double to[]) {
+    double most = 0, apart = 0;
+    for (size_t k = 0; k < n; k++) {
+        most = fmax(most, fmax(fabs(from[k]), fabs(to[k])));
+        apart = fmax(apart, fabs(to[k] - from[k]));
+    }
+    return apart > 0 ? most / apart : 0;
+}
+
+static double line_rounding(const line *l) {
+    size_t n = l->field->n;
+    double change = 0;
+    for (int i = 1; i < POINTS; i++)
+        change =
+            fmax(change, (POINTS - 1) * fabs(l->value[i] - l->value[i - 1]));
+    double places =
+        farness(n, l->from, l->to) + farness(n, l->from + n, l->to + n);
+    return DBL_EPSILON * (l->size + places * change);
+}
+
+static double third_difference(const double v[]) {
+    return fabs(v[3] - v[0] - 3 * (v[2] - v[1]));
+}
+
+/* Fills in the values at odd places, and cuts the line to the half with the larger
+   third difference, which is returned. */
+static double halve(line *l, double *begin, double *length) {
+    double *v = l->value;
+    for (int i = 1; i < POINTS; i += 2)
+        v[i] = value_at(l, *begin + *length * i / (POINTS - 1));
+    double left = third_difference(v), right = third_difference(v + 3);
+    const double *half = right > left ? v + 3 : v;
+    if (l->rounding == 0)
+        l->rounding = line_rounding(l);
+    *length /= 2;
+    *begin += right > left ? *length : 0;
+    double kept[] = {half[0], half[1], half[2], half[3]};
+    for (int i = 0; i < 4; i++)
+        v[2 * i] = kept[i];
+    return left + right < INFINITY ? fmax(left, right) : NAN;
+}
+
+static bool has_kink(line *l, double largest) {
+    double met[MOST_HALVES], begin = 0, length = 1;
+    int i = 0;
+    for (int k = 0; k < POINTS; k += 2)
+        l->value[k] = value_at(l, (double)k / (POINTS - 1));
+    do {
+        l->size = i ? 0 : l->size; /* of the last places */
+        met[i] = halve(l, &begin, &length);
+    } while (met[i] > resolved * l->rounding && ++i < MOST_HALVES);
+    i = i < MOST_HALVES ? i : MOST_HALVES - 1;
+    return i >= COMPARED && met[i] > smooth * met[i - COMPARED] &&
+           l->size <= largest;
+}
+
+bool nevh__kink_between(nevh_field *f, double t, const double from[],
+                        const double to[], double largest, double room[]) {
+    line l = {.field = f, .t = t, .state = room, .from = from, .to = to};
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
+    bool found = has_kink(&l, largest);
+    fesetenv(&own);
+    f->report = (nevh__report){0}; /* where H is not finite */
+    return found;
+}

@@ -1,0 +1,18 @@
+/* nevh: kinks and jumps of H where an orbit goes.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_KINKS_PRIVATE_H
+#define NEVH_KINKS_PRIVATE_H
+
+#include "gradient/field_private.h"
+
+/* Searches the straight line between two states for a kink or a jump of H, or of
+   its slope, with values of H alone.
+   from, to  2n each, coordinates first
+   largest   the sum of terms' |values| that the orbit met: places above it are not
+             where the orbit goes
+   room      2n
+   returns   whether there is one; not where H is not finite */
+bool nevh__kink_between(nevh_field *, double t, const double from[],
+                        const double to[], double largest, double room[]);
+
+#endif
