@@ -91,7 +91,7 @@ typedef enum {
                           energy, H autonomous [Hairer, Lubich, Wanner,
                           Geometric Numerical Integration, chapter IX] */
     NEVH_THEORY_LOSES, /* a drift: each step adds its error */
-    NEVH_THEORY_ROUGH  /* nothing, where it would be KEEPS: formulas have kinks or
+    NEVH_THEORY_ROUGH /* nothing, where it would be KEEPS: formulas have kinks or
                           jumps, as of abs or floor, or values of H, also of terms
                           in C, show some where the orbit goes */
 } nevh_theory;
@@ -153,8 +153,8 @@ typedef struct {
                  times >= 16, BOUNDED where the error comes back and is level,
                  UNDECIDED where a drive of OPEN has brought more energy than
                  the error and relative to that it is level, else UNSTABLE
-   max at rounding: BOUNDED, or where it grows RANDOM_WALK, once times >= 16;
-                 never DRIFTS; UNDECIDED above limit, and of LOSES: it hides more
+   max at rounding: BOUNDED, or where it grows RANDOM_WALK, once times >= 16; along
+                 a line, above limit, and of LOSES: UNDECIDED, it may hide more
    LOSES         DRIFTS where the slope is above four times its error, or the
                  error never comes back
    KEEPS, OPEN, ROUGH

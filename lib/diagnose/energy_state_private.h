@@ -26,10 +26,10 @@ struct nevh_energy {
     double *largest; /* width: the largest sum of terms' |values| met */
     double *seen;    /* width: the |error| at which that was looked for */
     nevh_theory theory;
-    bool searches;  /* for kinks, which would make KEEPS ROUGH */
-    double *marked; /* width x 2n: a state of a while ago, */
+    bool searches;        /* for kinks, which would make KEEPS ROUGH */
+    double *marked;       /* width x 2n: a state of a while ago, */
     size_t *mark, *kinks; /* width: its sample; kinks between such states */
-    double *noise, *blur;      /* width: of the gradient, relative */
+    double *noise, *blur; /* width: of the gradient, relative */
     size_t *steps, *next_look; /* width */
     bool *started;             /* width */
     double *sums;              /* 3 x width: of the terms, lost, and sizes */

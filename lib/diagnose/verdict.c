@@ -10,7 +10,8 @@ static const double nearly_ended = 0.3;  /* a power of t */
 static const double along_a_line = 0.75; /* likewise */
 static const double no_walk = 2;         /* likewise: faster than a drift */
 static const double straight =
-    0.95; /* of a line that theory knows nothing of */
+    0.95;                         /* of a line that theory knows nothing of */
+static const double ruled = 0.99; /* of rounding that is no walk */
 static const double lasting =
     0.3; /* of the largest error: is never made good */
 /* Part of the limit: steps with larger errors may not resolve the orbit. */
@@ -87,7 +88,9 @@ static nevh_verdict judge_rounding(const nevh_energy_report *r, double times) {
         return NEVH_UNDECIDED;
     if (is_level(r))
         return NEVH_BOUNDED;
-    return times < lasted ? NEVH_UNDECIDED : NEVH_RANDOM_WALK;
+    /* Rounding alike at each step, as of an exact flow's matrix, is no walk. */
+    bool walks = times >= lasted && r->straightness < ruled;
+    return walks ? NEVH_RANDOM_WALK : NEVH_UNDECIDED;
 }
 
 static nevh_verdict judge_loss(const nevh_energy_report *r) {
@@ -103,7 +106,7 @@ static nevh_verdict judge_growth(const nevh_energy_report *r) {
     bool line = is_line(r) && fmin(r->rate[0], r->rate[1]) > along_a_line;
     if (keeps && (slowest < nearly_ended || fastest > along_a_line))
         return NEVH_UNDECIDED;
-    if (fastest > no_walk)
+    if (fastest > no_walk || (noise && line && r->straightness > ruled))
         return NEVH_UNDECIDED;
     return line && !noise ? NEVH_DRIFTS : NEVH_RANDOM_WALK;
 }

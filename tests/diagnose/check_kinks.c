@@ -150,7 +150,7 @@ TEST(formulas) {
               {"hypot(x,0)+y^2", true},        {"acos(cos(3*x))+x^2+y^2", true},
               {"exp(0.5*log(x^2))+y^2", true}, {"acosh(cosh(x))+y^2", true},
               {"hypot(x,y)^3+x*y", false},     {"sqrt(1+x^2)+y^2", false},
-              {"log(3+x)+x^4+y^2", false},   {"(3+x)^1.5+x^4+y^2", false}};
+              {"log(3+x)+x^4+y^2", false},     {"(3+x)^1.5+x^4+y^2", false}};
     for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
         char effects[120];
         snprintf(effects, sizeof effects, "K = (p_x^2+p_y^2)/2\nV = %s",

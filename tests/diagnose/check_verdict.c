@@ -221,6 +221,15 @@ TEST(leaning_walk) {
     ck_assert_int_eq(judge(r, NEVH_THEORY_LOSES, 16), NEVH_DRIFTS);
     r.straightness = 0.97;
     ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, 16), NEVH_DRIFTS);
+    /* Of rounding: a straight line is neither. */
+    r.rounding = 1e-4;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, 16), NEVH_RANDOM_WALK);
+    r.straightness = 0.999;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, 16), NEVH_UNDECIDED);
+    r.rounding = 1e-2;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, 16), NEVH_UNDECIDED);
+    r.straightness = 0.7;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, 16), NEVH_RANDOM_WALK);
 }
 
 /* An error far above all energies is not left open when no run is longer. */

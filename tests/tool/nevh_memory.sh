@@ -88,6 +88,10 @@ starves 36 run pendulum --t-end 1 --samples 3 --plot $work/made.svg
 starves 6 section henon-heiles --t-end 20
 starves 6 new $work/made.nevh --from pendulum
 starves 5 list integrators
+starves 3 list gradients
+starves 3 list models --format json
+starves 4 help compare
+starves 4 help integrators
 starves 3 list scenes --format json
 starves 12 flow pendulum --t-end 1
 starves 8 sweep pendulum --vary 'phi=range(0.1,3,6)' --t-end 10 --threads 1 \
@@ -104,6 +108,7 @@ starves 4 chaos henon-heiles --t-end 20
 starves 4 frequencies henon-heiles --t-end 100
 starves 4 export kepler --integrators gauss4 --dt 0.1 -o $work/made.c
 starves 5 check pendulum --t-end 0.5
+printf 'name,task,answer\nAda,1.1a,2\n' >$work/answers.csv
 same= # times are measured
 starves 12 compare pendulum --t-end 1 --diagnostics \
     --integrators verlet,gauss4,gsl-rk8pd,dopri5,tao4,gonzalez
@@ -121,4 +126,16 @@ export TMPDIR
 starves 2 report pendulum --t-end 0.5 -o $work/made.html
 ls $work | grep '^nevh\.' && fails "leaves its folder"
 starves 3 hard 'pendulum at rest' --integrators verlet,gauss4,dop853
+starves 4 run pendulum --t-end 2 --plot $work/made.svg --plot-kind energy
+starves 3 run double-pendulum --t-end 1 --at 0.3,0.7
+starves 3 section henon-heiles --t-end 20 --plot $work/made.svg
+starves 2 cost pendulum --t-end 0.5 --by state --integrators verlet,wisdom-holman
+starves 2 compare pendulum --t-end 0.5 --plot $work/made.svg --plot-kind order \
+    --integrators verlet
+starves 2 portrait pendulum --t-end 1 --vary phi=0.5,1 --plot $work/made.svg
+
+starves 2 flow pendulum --t-end 1 --plot $work/made.svg
+starves 2 sheet
+starves 2 sheet 1 -o $work/made.html
+starves 2 mark $work/answers.csv
 exit $status

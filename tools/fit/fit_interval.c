@@ -214,7 +214,7 @@ gsl_vector *fit_intervals(fitting *f, const gsl_vector *x,
                  .least = f->chi_square,
                  .lowest = f->chi_square,
                  .rise = wide * wide * variance};
-    gsl_multifit_nlinear_covar(jacobian, 0, c);
+    fit_covariance(jacobian, c);
     take_linear(&p, variance);
     f->profiled = !is_quadratic(&p);
     if (f->profiled)

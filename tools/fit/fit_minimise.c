@@ -2,6 +2,8 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit_private.h"
 #include <gsl/gsl_blas.h>
+#include <gsl/gsl_linalg.h>
+#include <gsl/gsl_multifit_nlin.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -73,10 +75,26 @@ static int derivatives(const gsl_vector *x, void *data, gsl_matrix *j) {
     return good ? GSL_SUCCESS : GSL_EFAILED;
 }
 
+void fit_covariance(const gsl_matrix *jacobian, gsl_matrix *c) {
+    size_t columns = jacobian->size2;
+    size_t least = columns < jacobian->size1 ? columns : jacobian->size1;
+    gsl_matrix *r = fit_matrix(jacobian->size1, columns);
+    gsl_vector *tau = fit_vector(least), *norm = fit_vector(columns);
+    gsl_permutation *order = tool_owned(gsl_permutation_alloc(columns));
+    int sign;
+    gsl_matrix_memcpy(r, jacobian);
+    gsl_linalg_QRPT_decomp(r, tau, order, &sign, norm);
+    gsl_multifit_covar_QRPT(r, order, 0, c);
+    gsl_matrix_free(r);
+    gsl_vector_free(tau);
+    gsl_vector_free(norm);
+    gsl_permutation_free(order);
+}
+
 void fit_explain(const gsl_matrix *jacobian, gsl_vector *d, gsl_matrix *c,
                  gsl_vector *x) {
     gsl_vector *slope = fit_vector(x->size);
-    gsl_multifit_nlinear_covar(jacobian, 0, c);
+    fit_covariance(jacobian, c);
     gsl_blas_dgemv(CblasTrans, 1, jacobian, d, 0, slope);
     gsl_blas_dgemv(CblasNoTrans, 1, c, slope, 0, x);
     gsl_blas_dgemv(CblasNoTrans, -1, jacobian, x, 1, d);

@@ -110,6 +110,8 @@ gsl_matrix *fit_matrix(size_t rows, size_t columns);
    returns  0; a status of GSL */
 int fit_minimise(fitting *, size_t used, gsl_vector *x, double *chi_square,
                  gsl_multifit_nlinear_workspace **w);
+/* As gsl_multifit_nlinear_covar, which crashes where memory is out. */
+void fit_covariance(const gsl_matrix *jacobian, gsl_matrix *c);
 /* The least squares solution of J x = d, its part that x does not explain in d, and
    the covariance c of x where residuals have variance 1. */
 void fit_explain(const gsl_matrix *jacobian, gsl_vector *d, gsl_matrix *c,
