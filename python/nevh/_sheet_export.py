@@ -61,7 +61,7 @@ def _units(unit):
 
 def _answer(share, number, width, said):
     return ('<answer fraction="%d" format="plain_text"><text>%.10g</text>'
-            "<tolerance>%.3g</tolerance><feedback format=\"html\"><text>%s</text>"
+            "<tolerance>%.6g</tolerance><feedback format=\"html\"><text>%s</text>"
             "</feedback></answer>\n" % (share, number, width, html.escape(html.escape(said))))
 
 

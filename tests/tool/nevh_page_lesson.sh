@@ -12,14 +12,17 @@ command -v node >/dev/null 2>&1 || {
     exit 77
 }
 pages=
-for scene in pendulum kepler henon-heiles elastic-pendulum coupled-pendulums; do
+for scene in pendulum kepler henon-heiles elastic-pendulum coupled-pendulums \
+    double-pendulum figure-eight coupled-oscillators; do
     exits 0 page $scene -o $work/$scene.html
     pages="$pages $work/$scene.html"
 done
-# Friction: none of the schemes keeps what it takes.
-exits 0 page damped-driven-pendulum -o $work/damped.html
-cp $work/damped.html $work/out
-has '"lesson":{"why":[1-3],'
+# Friction or a drive: none of the schemes keeps what it takes.
+for scene in damped-driven-pendulum kapitza; do
+    exits 0 page $scene -o $work/driven.html
+    cp $work/driven.html $work/out
+    has '"lesson":{"why":[1-3],'
+done
 # Settings that are given stay.
 exits 0 page pendulum --dt 0.05 -o $work/given.html
 cp $work/given.html $work/out

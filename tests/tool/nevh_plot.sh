@@ -385,11 +385,12 @@ cmp $work/rows $work/drawn || fails "draws bobs elsewhere"
 awk '/^\$series1[23] <</ { getline; print }' $work/out.gp >$work/drawn
 printf '1 -6.12323399573677e-17\n1 -1\n' | cmp - $work/drawn ||
     { fails "draws starts elsewhere"; cat $work/drawn; }
-# Bobs have the colour of the integrator, those of the reference are grey.
+# Bobs have the colour of the integrator that moves them; those of the reference, and the
+# fixed centre, are grey.
 draws run kepler --t-end 5 --plot-kind configuration --integrators gauss4 --plot $svg
-for colour in '#009E73' '#999999'; do
-    test "$(grep -c "stroke='$colour'.*stroke-linecap='round'\|fill='$colour'" $svg)" -ge 2 ||
-        fails "draws no bodies in $colour"
+for colour in '1 #009E73' '3 #999999'; do
+    test "$(grep -c "stroke='${colour#* }'.*stroke-linecap='round'" $svg)" = ${colour% *} ||
+        fails "draws not ${colour% *} bodies in ${colour#* }"
 done
 grep -q '#0072B2' $svg && fails "has a colour that is no integrator's here"
 # Names of bobs, and axes by what places them.

@@ -55,6 +55,13 @@ awk '$1 > 3.15 || $1 < -3.15 || $2 < 3 { print; wrong = 1 }
     END { exit wrong || NR < 100 }' $work/round ||
     fails "does not wrap the angle"
 
+# An orbit about half a turn is in one piece.
+exits 0 portrait kapitza --integrators verlet --t-end 5 --plot $work/a.svg \
+    --keep-plot-script $work/gp
+has '^centre at phi = 3\.14'
+points 5 | awk '$1 < 2.9 || $1 > 3.4 { wrong = 1 } END { exit wrong || NR < 100 }' ||
+    fails "cuts an orbit about half a turn"
+
 # A double well: two centres, and a saddle between them.
 cat >$work/well.nevh <<'END'
 [coordinates]

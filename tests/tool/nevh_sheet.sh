@@ -165,7 +165,9 @@ grep -qF "$ratio" $work/check/*.html && fails "holds an answer in plain text"
 "$python" - $work/quiz.xml $work/check/sheet-8-ada-lovelace-check.html $ratio <<'END' ||
 import json, math, re, sys
 import xml.etree.ElementTree as tree
+from nevh import _classroom
 from nevh import _sheet_export as export
+room = _classroom.Room()
 quiz = tree.parse(sys.argv[1]).getroot()
 asked = quiz.findall("question[@type='numerical']")
 assert len(asked) == 4, len(asked)
@@ -177,6 +179,8 @@ for one in asked:
     right = one.findall("answer")[0]
     number, tolerance = (float(right.findtext(part)) for part in ("text", "tolerance"))
     assert 0 < tolerance < abs(number)/5, (number, tolerance)
+    answer = _classroom.Answer(room, room.tasks[one.findtext("name/text")], "Ada Lovelace", "7")
+    assert abs(tolerance/answer.width(answer.number) - 1) < 1e-5, (number, tolerance)
     for wrong in one.findall("answer")[1:]:
         assert wrong.get("fraction") == "0"
         assert abs(float(wrong.findtext("text")) - number) > tolerance

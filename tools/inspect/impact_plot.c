@@ -76,7 +76,10 @@ static char *heading_of(const char *effect, const trace *without,
                         const difference *d) {
     for (size_t k = 0; k < without->plan->n; k++)
         if (without->high[k] > without->low[k])
-            return text_print("%s: %.1e at most", effect, d->largest);
+            return d->largest < 0.01
+                       ? text_print("%s: %.1e of the range", effect, d->largest)
+                       : text_print("%s: %.0f %% of the range", effect,
+                                    100 * d->largest);
     return text_print("%s: no coordinate moves without it", effect);
 }
 

@@ -23,6 +23,17 @@ static bob_list bobs_of(nevh_scene *s) {
     return b;
 }
 
+/* True if the place of a bob is two numbers. */
+static bool is_fixed(const bob_list *b, size_t bob) {
+    for (size_t k = 0; k < 2; k++) {
+        char *end;
+        strtod(nevh_scene_part_at(b->scene, b->part[bob]).item[k], &end);
+        if (*end)
+            return false;
+    }
+    return true;
+}
+
 /* The four values of part i; NAN for formulas without a value. */
 static void part(nevh_scene *s, size_t i, double t, const double q[],
                  const double p[], double values[4]) {
@@ -145,10 +156,13 @@ static void draw_rods(plot *to, const bob_list *b, const orbit *o) {
     }
 }
 
-/* Smaller ones later, so that none is hidden. */
-static void draw_bob(plot *to, size_t bob, const orbit *o, const double at[2]) {
+/* Smaller ones later, so that none is hidden; grey where no integrator moves it. */
+static void draw_bob(plot *to, const bob_list *b, size_t bob, const orbit *o,
+                     const double at[2]) {
     static const double least = 0.35, less = 0.2;
     size_t series = new_series(to, o, PLOT_BOBS, PLOT_GREY_BOBS);
+    if (is_fixed(b, bob))
+        plot_style(to, series, PLOT_GREY_BOBS);
     plot_size(to, series, fmax(1 - less * (double)bob, least));
     plot_point(to, series, at[0], at[1]);
 }
@@ -172,11 +186,12 @@ static void draw(plot *to, const bob_list *b, const orbit *o) {
         draw_trail(to, o, bob);
     for (size_t bob = 0; bob < b->count && o->rows.count && o->integrator;
          bob++)
-        draw_start(to, o, bob);
+        if (!is_fixed(b, bob))
+            draw_start(to, o, bob);
     draw_rods(to, b, o);
     for (size_t bob = 0; bob < b->count; bob++) {
         part(b->scene, b->part[bob], o->t, o->q, o->p, values);
-        draw_bob(to, bob, o, values);
+        draw_bob(to, b, bob, o, values);
         name_bob(to, b, bob, values);
     }
 }
@@ -343,7 +358,7 @@ static void draw_moment(plot *to, const bob_list *b, const orbit *o,
         if (strcmp(nevh_scene_part_at(b->scene, i).kind, "rod") == 0)
             draw_rod(to, orbit_row(o, last) + 4 * i);
     for (size_t bob = 0; bob < b->count; bob++)
-        draw_bob(to, bob, o, orbit_row(o, last) + 4 * b->part[bob]);
+        draw_bob(to, b, bob, o, orbit_row(o, last) + 4 * b->part[bob]);
 }
 
 static plot *draw_frame(const run_picture *picture, const bob_list *b,

@@ -13,6 +13,17 @@ typedef struct {
     double middle, low_x, high_x, low_y, high_y;
 } window;
 
+/* A shape as it is drawn. */
+typedef struct {
+    double middle; /* NAN: there is none */
+    bool drawn;    /* false: a thread that would cover the panel */
+} outline;
+
+typedef struct {
+    const flow_job *job;
+    outline *shapes; /* those of all times, row by row */
+} picture;
+
 static void widen(window *w, double x, double y) {
     w->low_x = fmin(w->low_x, x);
     w->high_x = fmax(w->high_x, x);
@@ -25,32 +36,31 @@ static size_t plane(const flow_job *j) {
     return j->shape.kind == FLOW_LOOP ? 0 : j->shape.k;
 }
 
-/* NAN: there is no shape. */
-static double middle_of(const flow_job *j, const nevh_loop *l, size_t time) {
-    double sum = 0, *q = tool_allocate(j->plan.n, sizeof *q);
-    size_t count = 0;
-    for (; nevh_loop_shape(l, time, count, q, NULL); count++)
-        sum += q[plane(j)];
-    free(q);
-    return sum / (double)count;
+static const outline *shape_of(const picture *f, const flow_row *r,
+                               size_t time) {
+    return &f->shapes[(size_t)(r - f->job->row) * f->job->times + time];
 }
 
 /* A whole number of periods that brings a shape next to the window's middle. */
-static double shift_of(const flow_job *j, const nevh_loop *l, size_t time,
-                       const window *w) {
-    double period = nevh_scene_period(j->plan.scene, plane(j));
-    double off = middle_of(j, l, time) - w->middle;
+static double shift_of(const picture *f, const outline *s, const window *w) {
+    double period = nevh_scene_period(f->job->plan.scene, plane(f->job));
+    double off = s->middle - w->middle;
     return period > 0 && !isnan(off) ? period * floor(off / period + 0.5) : 0;
 }
 
-/* The length of the outline over the diagonal of what it covers: of a circle 2.2. */
-static double stretch_of(const flow_job *j, const nevh_loop *l, size_t time) {
+/* A shape is drawn where its area is resolved, and its outline at most 12 times as long
+   as the diagonal of what it covers, of a circle 2.2. */
+static outline measured(const flow_job *j, const nevh_loop *l, size_t time) {
+    static const double most = 12;
     window w = {0, INFINITY, -INFINITY, INFINITY, -INFINITY};
     double *q = tool_allocate(2 * j->plan.n, sizeof *q), *p = q + j->plan.n;
-    for (size_t k = 0; nevh_loop_shape(l, time, k, q, p); k++)
+    double sum = 0, length = 0, last_x = NAN, last_y = NAN;
+    size_t count = 0;
+    for (; nevh_loop_shape(l, time, count, q, p); count++) {
+        sum += q[plane(j)];
         widen(&w, q[plane(j)], p[plane(j)]);
-    double x = w.high_x - w.low_x, y = w.high_y - w.low_y, length = 0;
-    double last_x = NAN, last_y = NAN;
+    }
+    double x = w.high_x - w.low_x, y = w.high_y - w.low_y;
     for (size_t k = 0; nevh_loop_shape(l, time, k, q, p); k++) {
         double step =
             hypot((q[plane(j)] - last_x) / x, (p[plane(j)] - last_y) / y);
@@ -59,15 +69,17 @@ static double stretch_of(const flow_job *j, const nevh_loop *l, size_t time) {
         last_y = p[plane(j)];
     }
     free(q);
-    return length / sqrt(2);
+    nevh_loop_area at = nevh_loop_result(l, time);
+    return (outline){sum / (double)count,
+                     time == 0 || (flow_resolved(at) && !at.inside &&
+                                   length / sqrt(2) <= most)};
 }
 
-/* False where the shape is a thread that would cover the panel. */
-static bool is_drawn(const flow_job *j, const nevh_loop *l, size_t time) {
-    static const double most = 12;
-    nevh_loop_area at = nevh_loop_result(l, time);
-    return time == 0 ||
-           (flow_resolved(at) && !at.inside && stretch_of(j, l, time) <= most);
+static picture measure(const flow_job *j) {
+    picture f = {j, tool_allocate(j->rows * j->times, sizeof *f.shapes)};
+    for (size_t i = 0; i < j->rows * j->times; i++)
+        f.shapes[i] = measured(j, j->row[i / j->times].loop, i % j->times);
+    return f;
 }
 
 static bool keeps(const flow_job *j, const flow_row *r) {
@@ -77,28 +89,35 @@ static bool keeps(const flow_job *j, const flow_row *r) {
            !isnan(nevh_loop_result(r->loop, 0).area);
 }
 
+static void widen_by(window *w, const picture *f, const flow_row *r,
+                     size_t time) {
+    static const double large = 4;
+    const flow_job *j = f->job;
+    const outline *s = shape_of(f, r, time);
+    double ratio = nevh_loop_result(r->loop, time).area /
+                   nevh_loop_result(r->loop, 0).area;
+    if (!s->drawn || fabs(ratio) > large)
+        return;
+    double *q = tool_allocate(2 * j->plan.n, sizeof *q), *p = q + j->plan.n;
+    double shift = shift_of(f, s, w);
+    for (size_t k = 0; nevh_loop_shape(r->loop, time, k, q, p); k++)
+        widen(w, q[plane(j)] - shift, p[plane(j)]);
+    free(q);
+}
+
 /* The window holds the shapes of symplectic integrators, if there are any; others
    may leave it. Shapes that are much larger than at first are left out. */
-static window find_window_at(const flow_job *j, double middle) {
-    static const double large = 4, margin = 0.08;
+static window find_window_at(const picture *f, double middle) {
+    static const double margin = 0.08;
+    const flow_job *j = f->job;
     window w = {middle, INFINITY, -INFINITY, INFINITY, -INFINITY};
-    double *q = tool_allocate(2 * j->plan.n, sizeof *q), *p = q + j->plan.n;
     bool any = false;
     for (size_t i = 0; i < j->rows; i++)
         any = any || keeps(j, &j->row[i]);
     for (size_t i = 0; i < j->rows; i++)
         if (keeps(j, &j->row[i]) || !any)
-            for (size_t time = 0; time < j->times; time++) {
-                const nevh_loop *l = j->row[i].loop;
-                nevh_loop_area at = nevh_loop_result(l, time);
-                if (!is_drawn(j, l, time) ||
-                    fabs(at.area / nevh_loop_result(l, 0).area) > large)
-                    continue;
-                double shift = shift_of(j, l, time, &w);
-                for (size_t k = 0; nevh_loop_shape(l, time, k, q, p); k++)
-                    widen(&w, q[plane(j)] - shift, p[plane(j)]);
-            }
-    free(q);
+            for (size_t time = 0; time < j->times; time++)
+                widen_by(&w, f, &j->row[i], time);
     double x = margin * (w.high_x - w.low_x), y = margin * (w.high_y - w.low_y);
     w.low_x -= x;
     w.high_x += x;
@@ -108,13 +127,13 @@ static window find_window_at(const flow_job *j, double middle) {
 }
 
 /* About 0, or about the start, where the shapes then are closer together. */
-static window find_window(const flow_job *j) {
-    window w = find_window_at(j, 0);
+static window find_window(const picture *f) {
+    window w = find_window_at(f, 0);
     double start = NAN;
-    for (size_t i = 0; i < j->rows && isnan(start); i++)
-        start = middle_of(j, j->row[i].loop, 0);
+    for (size_t i = 0; i < f->job->rows && isnan(start); i++)
+        start = shape_of(f, &f->job->row[i], 0)->middle;
     if (!isnan(start)) {
-        window other = find_window_at(j, start);
+        window other = find_window_at(f, start);
         if (other.high_x - other.low_x < 0.99 * (w.high_x - w.low_x))
             w = other;
     }
@@ -154,9 +173,9 @@ static void draw_outline(plot *to, const flow_job *j, const nevh_loop *l,
 /* Names the time at the right end of the shape, where that is in the window;
    returns whether any of it is. */
 static bool name_time(plot *to, const flow_job *j, const nevh_loop *l,
-                      size_t time, const window *w) {
+                      size_t time, double shift, const window *w) {
     double *q = tool_allocate(2 * j->plan.n, sizeof *q), *p = q + j->plan.n;
-    double shift = shift_of(j, l, time, w), right = -INFINITY, up = 0;
+    double right = -INFINITY, up = 0;
     for (size_t k = 0; nevh_loop_shape(l, time, k, q, p); k++) {
         double x = q[plane(j)] - shift, y = p[plane(j)];
         if (x > right && x >= w->low_x && x <= w->high_x && y >= w->low_y &&
@@ -178,8 +197,7 @@ static bool name_time(plot *to, const flow_job *j, const nevh_loop *l,
 }
 
 static void draw_shape(plot *to, const flow_job *j, const flow_row *r,
-                       size_t time, const window *w) {
-    double shift = shift_of(j, r->loop, time, w);
+                       size_t time, double shift, const window *w) {
     plot_form form = j->plan.n == 1 ? PLOT_FILLED : PLOT_TRAIL;
     draw_outline(to, j, r->loop, time, new_series(to, r, form), shift, w);
     for (int i = 0; i < FLOW_EYES; i++)
@@ -238,17 +256,21 @@ static void begin_panel(plot **to, const flow_job *j, const window *w) {
 
 /* Later shapes are longer: they are behind.
    returns  how many are left out */
-static size_t draw_panel(plot **to, const flow_job *j, const flow_row *r,
+static size_t draw_panel(plot **to, const picture *f, const flow_row *r,
                          const window *w) {
+    const flow_job *j = f->job;
     size_t every = (j->times + MOST_SHAPES - 1) / MOST_SHAPES, left_out = 0;
     bool outside = false;
     begin_panel(to, j, w);
-    for (size_t k = (j->times - 1) / every + 1; k-- > 0;)
-        if (is_drawn(j, r->loop, k * every)) {
-            draw_shape(*to, j, r, k * every, w);
-            outside |= !name_time(*to, j, r->loop, k * every, w);
+    for (size_t k = (j->times - 1) / every + 1; k-- > 0;) {
+        const outline *s = shape_of(f, r, k * every);
+        double shift = shift_of(f, s, w);
+        if (s->drawn) {
+            draw_shape(*to, j, r, k * every, shift, w);
+            outside |= !name_time(*to, j, r->loop, k * every, shift, w);
         } else
             left_out++;
+    }
     char *heading = heading_of(j, r, outside);
     plot_heading(*to, heading);
     free(heading);
@@ -257,13 +279,15 @@ static size_t draw_panel(plot **to, const flow_job *j, const flow_row *r,
 
 int flow_plot(const flow_job *j, const options *o) {
     plot *to = NULL;
-    window w = find_window(j);
+    picture f = measure(j);
+    window w = find_window(&f);
     size_t left_out = 0;
     for (size_t i = 0; i < j->rows; i++) {
         if (isnan(nevh_loop_result(j->row[i].loop, 0).area))
             continue; /* refused */
-        left_out += draw_panel(&to, j, &j->row[i], &w);
+        left_out += draw_panel(&to, &f, &j->row[i], &w);
     }
+    free(f.shapes);
     if (!to)
         return tool_refuse("nothing to plot: no integrator fits");
     char *more = text_print(

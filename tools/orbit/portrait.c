@@ -82,14 +82,25 @@ static void run_orbits(portrait_job *j, orbits_of *o) {
     nevh_stepper_free(s);
 }
 
-/* Into the period round 0. */
+/* Into the period of the window, or round 0 where there is no window. */
 static double wrapped(const portrait_job *j, double x) {
+    const portrait_window *w = &j->levels.window;
     double period = nevh_scene_period(j->plan.scene, 0);
-    return period > 0 ? x - period * floor(x / period + 0.5) : x;
+    double middle = (w->low_x + w->high_x) / 2;
+    return period > 0 ? x - period * floor((x - middle) / period + 0.5) : x;
 }
 
 static bool is_symplectic(const orbits_of *o) {
     return !o->refused && o->symplectic;
+}
+
+/* The least angle of a window of a period: half a period below 0, or 0 or a period below
+   it, where orbits about half a period are then in one piece. */
+static double least_angle(double low, double high, double period) {
+    double half = period / 2;
+    return low > 0 && low < half && high > half && high < period      ? 0
+           : high < 0 && high > -half && low < -half && low > -period ? -period
+                                                                      : -half;
 }
 
 /* The range of symplectic integrators, if there are any, with a margin; of an angle
@@ -109,13 +120,14 @@ static portrait_window find_window(const portrait_job *j) {
             w.low_y = fmin(w.low_y, j->of[i].points[2 * k + 1]);
             w.high_y = fmax(w.high_y, j->of[i].points[2 * k + 1]);
         }
+    double least = least_angle(w.low_x, w.high_x, period);
     double x = room * (w.high_x - w.low_x), y = room * (w.high_y - w.low_y);
     x = x > 0 ? x : fmax(1, fabs(w.high_x));
     y = y > 0 ? y : fmax(1, fabs(w.high_y));
     w = (portrait_window){w.low_x - x, w.high_x + x, w.low_y - y, w.high_y + y};
     if (period > 0) {
-        w.low_x = -period / 2;
-        w.high_x = period / 2;
+        w.low_x = least;
+        w.high_x = least + period;
     }
     return w;
 }

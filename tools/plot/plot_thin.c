@@ -155,7 +155,7 @@ static size_t run_length(const pair from[], size_t count) {
 
 static size_t thin_lines(const plot_screen *s, bool solid, const pair from[],
                          size_t count, pair to[]) {
-    cells c = cells_new(s, cell_of_detail);
+    cells c = solid ? cells_new(s, cell_of_detail) : (cells){0};
     pair *line = tool_allocate(count, sizeof *line);
     size_t kept = 0, length;
     for (size_t i = 0; i < count; i += length + 1) {
