@@ -155,6 +155,8 @@ test "$(grep -c '<path fill="none" .* d="M[0-9]*,' $film)" = 2 || fails "shows n
 exits 0 report outer-solar-system -o $work/planets.html --t-end 2000
 grep -q 'rk4 has then lost .* of the energy scale' $work/planets.html ||
     fails "shows no loss of rk4"
+test "$(grep -o '<circle r="[0-9]*" fill="[^"]*' $work/planets.html | cut -d'"' -f4 | uniq -c |
+    awk '{ printf "%s ", $1 }')" = '6 6 ' || fails "gives a body the colour of another scheme"
 
 # Levels of H say nothing of driven orbits, nor is a scheme symplectic with friction.
 exits 0 report damped-driven-pendulum -o $work/driven.html --t-end 5

@@ -93,6 +93,21 @@ static const double *frame(const recording *r, size_t i) {
     return r->place + (i < r->frames ? i : r->frames - 1) * r->columns;
 }
 
+static const char *colour_of(const recording *r) {
+    return plot_colour_of(plot_look_of_integrator(r->integrator));
+}
+
+/* Grey where the bob stays. */
+static const char *colour_of_bob(const animation *f, const recording *r,
+                                 size_t bob) {
+    size_t at = 4 * f->rods + 2 * bob;
+    for (size_t i = 1; i < r->frames; i++)
+        if (frame(r, i)[at] != frame(r, 0)[at] ||
+            frame(r, i)[at + 1] != frame(r, 0)[at + 1])
+            return colour_of(r);
+    return "#999";
+}
+
 static void put_places_of(const animation *f, const recording *r, const view *v,
                           size_t bob, size_t first, FILE *to) {
     for (size_t i = first; i < r->frames; i++) {
@@ -105,7 +120,7 @@ static void put_places_of(const animation *f, const recording *r, const view *v,
 /* The whole way faintly, the last steps more. */
 static void put_trail(const animation *f, const recording *r, const view *v,
                       size_t bob, FILE *to) {
-    const char *colour = plot_colour_of(bob);
+    const char *colour = colour_of_bob(f, r, bob);
     size_t last = r->frames - 1;
     fprintf(to,
             "<path fill=\"none\" stroke=\"%s\" stroke-opacity=\".25\" "
@@ -134,13 +149,9 @@ static void put_orbit(const animation *f, const recording *r, const view *v,
                 down(v, at[3]));
     for (size_t i = 0; i < f->bobs; i++, at += 2)
         fprintf(to, "<circle r=\"%d\" fill=\"%s\" cx=\"%d\" cy=\"%d\"/>\n",
-                i < 4 ? 26 - 4 * (int)i : 12, plot_colour_of(i),
+                i < 4 ? 26 - 4 * (int)i : 12, colour_of_bob(f, r, i),
                 across(v, at[0]), down(v, at[1]));
     fputs("</g>\n", to);
-}
-
-static const char *colour_of(const recording *r) {
-    return plot_colour_of(plot_look_of_integrator(r->integrator));
 }
 
 static void put_panel(const animation *f, size_t i, const view *v, FILE *to) {
