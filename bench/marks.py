@@ -10,6 +10,7 @@ SPDX-License-Identifier: GPL-3.0-or-later
 """
 
 import collections
+import decimal
 import math
 import random
 import sys
@@ -26,10 +27,15 @@ def digits(number, count):
     return "%.*g" % (count, number)
 
 
+def half_up(number, unit):
+    """A number to a multiple of a power of ten, halves away from 0, as people round."""
+    return decimal.Decimal(number).quantize(unit, decimal.ROUND_HALF_UP)
+
+
 def rounded(number, task, chance):
     """A number as people write it."""
     style = chance.choice(["asked", "asked", "more", "all", "truncated", "power", "comma",
-                           "long"])
+                           "long", "twice"])
     if task.kind == "decimals":
         places = task.digits + (style in ("more", "long")) + 3*(style == "all")
         if style == "truncated":
@@ -43,6 +49,9 @@ def rounded(number, task, chance):
             unit = 10.0**(math.floor(math.log10(abs(number))) - count + 1)
             number = math.trunc(number/unit)*unit
         made = digits(number, count)
+        if style == "twice" and number:  # 116.3457, 116.35, 116.4
+            unit = decimal.Decimal(1).scaleb(decimal.Decimal(number).adjusted() - count + 1)
+            made = format(half_up(half_up(number, unit/10), unit), "f")
         if style == "power":
             mantissa, power = ("%.*e" % (count - 1, number)).split("e")
             made = mantissa + chance.choice(["*10^", " x 10^", "\u00b710^"]) + str(int(power))
