@@ -195,31 +195,33 @@ static bool order_pairs(table *t) {
 
 /* Terms. */
 
-static bool instance_own(nevh__adder *a, nevh__tape *tape) {
+/* One of the latest tapes that does the same, or NULL. */
+static nevh__tape *same_tape(const nevh__owned *owned, const nevh__tape *tape) {
+    enum { LATEST = 8 };
+    for (size_t i = owned->count; i > 0 && owned->count - i < LATEST; i--)
+        if (nevh__tape_alike(owned->tapes[i - 1], tape) &&
+            nevh__tape_same(owned->tapes[i - 1], tape))
+            return owned->tapes[i - 1];
+    return NULL;
+}
+
+/* Terms of one formula share a tape.  Returns it; NULL: memory is out. */
+static nevh__tape *instance_own(nevh__adder *a, nevh__tape *tape) {
     nevh__owned *owned = a->owned;
+    nevh__tape *shared = same_tape(owned, tape);
+    if (shared) {
+        nevh__tape_free(tape);
+        return shared;
+    }
     nevh__tape **tapes =
         nevh__grow(owned->tapes, owned->count + 1, sizeof *tapes);
     if (!tapes) {
         nevh__tape_free(tape);
-        return nevh__formula_no_memory(a->walk.scope.error);
+        nevh__formula_no_memory(a->walk.scope.error);
+        return NULL;
     }
     owned->tapes = tapes;
-    tapes[owned->count++] = tape;
-    return true;
-}
-
-static size_t terms_of(const nevh_system *s, const char *effect) {
-    size_t count = 0;
-    for (size_t i = 0; i < s->n_terms; i++)
-        count += strcmp(s->effects[s->terms[i]->effect].name, effect) == 0;
-    return count;
-}
-
-/* The name that nevh_system_add would choose, found in less time. */
-static char *term_name(const nevh__adder *a) {
-    size_t others = terms_of(a->system, a->effect);
-    return others ? nevh__text("%s %zu", a->effect, others + 1)
-                  : nevh__text("%s", a->effect);
+    return tapes[owned->count++] = tape;
 }
 
 static bool instance_add_term(nevh__adder *a, const table *t,
@@ -231,12 +233,7 @@ static bool instance_add_term(nevh__adder *a, const table *t,
     term.p = t->p;
     term.c = t->c;
     term.count = t->count;
-    char *name = term_name(a);
-    if (!name)
-        return nevh__formula_no_memory(error);
-    term.name = name;
     int status = nevh_system_add(a->system, &term);
-    free(name);
     if (status)
         return nevh__formula_fail(error, status, 0, 0, "%s",
                                   nevh_system_message(a->system));
@@ -262,8 +259,8 @@ static bool make_term(part_tables *p, table *t) {
         nevh__tape_free(tape);
         return no_memory(p);
     }
-    return tape && instance_own(p->adder, tape) &&
-           instance_add_term(p->adder, t, tape);
+    tape = tape ? instance_own(p->adder, tape) : NULL;
+    return tape && instance_add_term(p->adder, t, tape);
 }
 
 static bool add_constant(part_tables *p) {
@@ -273,8 +270,8 @@ static bool add_constant(part_tables *p) {
     table none = {.count = 1};
     if (!tape)
         return no_memory(p);
-    return instance_own(p->adder, tape) &&
-           instance_add_term(p->adder, &none, tape);
+    tape = instance_own(p->adder, tape);
+    return tape && instance_add_term(p->adder, &none, tape);
 }
 
 bool nevh__add_part(nevh__adder *adder, const nevh__formula_part *part) {

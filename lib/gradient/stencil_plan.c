@@ -89,7 +89,8 @@ static bool plan_part(const nevh_field *f, nevh__planned *term, size_t part) {
         return true; /* most of a row would be variables at rest */
     if (points > f->capacity)
         return true; /* there is no room for all points at once */
-    nevh__stencil *s = term->stencil[part] = nevh__array(1, sizeof *s);
+    nevh__stencil *s = term->stencil[part] =
+        nevh__array(1, sizeof *s + slopes * sizeof *s->slope);
     if (!s)
         return false;
     s->padded = nevh__padded(points);

@@ -28,7 +28,7 @@ struct nevh__stencil {
     double *constants; /* of any places: nc rows of so many lanes */
     size_t lanes;      /* 0: of none yet */
     size_t slopes;
-    nevh__stencil_slope slope[NEVH__MOST_SLOPES];
+    nevh__stencil_slope slope[];
 };
 
 #endif

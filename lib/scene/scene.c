@@ -219,6 +219,7 @@ void nevh_scene_free(nevh_scene *s) {
         nevh__head_free(&s->varies[i]->head);
     nevh__pool_free(&s->pool);
     free(s->assignments);
+    free(s->effect_names.entries);
     free(s->starts);
     free(s->varies);
     free(s);

@@ -58,6 +58,7 @@ typedef struct {
 typedef struct {
     const char *name;
     bool on;
+    const nevh__statement *by; /* the last that gives it */
 } nevh__switch;
 
 /* The values of one coordinate, which may be an array. */
@@ -157,6 +158,7 @@ struct nevh_scene {
     struct nevh__scheme *schemes; /* all that were made of them */
     nevh__switch *effects;        /* in order of appearance */
     size_t n_effects;
+    nevh__register effect_names;
     bool switched;                 /* from outside */
     nevh__statement **assignments; /* from outside, the newest last */
     size_t n_assignments;

@@ -4,10 +4,8 @@
 #include <string.h>
 
 nevh__switch *nevh__scene_effect(const nevh_scene *s, const char *name) {
-    for (size_t i = 0; i < s->n_effects; i++)
-        if (strcmp(s->effects[i].name, name) == 0)
-            return &s->effects[i];
-    return NULL;
+    size_t i = nevh__register_find(&s->effect_names, name);
+    return i < s->n_effects ? &s->effects[i] : NULL;
 }
 
 bool nevh__scene_fail_effect(nevh_scene *s, const nevh__piece *piece) {
@@ -33,18 +31,23 @@ static bool add_switch(nevh_scene *s, nevh__scene_model *m,
                        const nevh__statement *statement) {
     (void)m;
     const char *name = statement->head.name;
-    for (const nevh__statement *one = s->statements; one < statement; one++)
-        if (one->section == statement->section &&
-            strcmp(one->head.name, name) == 0)
-            return nevh__scene_fail(s, NEVH_EINVAL, &statement->key,
-                                    "%s is there already, in line %zu", name,
-                                    one->key.line->number);
+    nevh__switch *effect = nevh__scene_effect(s, name);
+    if (effect && effect->by->section == statement->section)
+        return nevh__scene_fail(s, NEVH_EINVAL, &statement->key,
+                                "%s is there already, in line %zu", name,
+                                effect->by->key.line->number);
     if (strcmp(name, "all") == 0 || strcmp(name, "none") == 0)
         return nevh__scene_fail(s, NEVH_EINVAL, &statement->key,
                                 "%s stands for %s effects", name,
                                 name[0] == 'a' ? "all" : "no");
-    if (!nevh__scene_effect(s, name))
-        s->effects[s->n_effects++] = (nevh__switch){name, true};
+    if (!effect && !nevh__register_reserve(&s->effect_names))
+        return nevh__scene_no_memory(s);
+    if (!effect) {
+        nevh__register_put(&s->effect_names, name, s->n_effects);
+        effect = &s->effects[s->n_effects++];
+        *effect = (nevh__switch){.name = name, .on = true};
+    }
+    effect->by = statement;
     return nevh__head_plain(s, statement);
 }
 

@@ -140,9 +140,13 @@ static void run(trial *f) {
     /* A sample alone may use the whole budget for a large H. */
     int parts = f->instances > large ? PARTS : 1;
     look(f, 0, t);
-    for (int i = 1; !status && i <= SAMPLES && work_of(f) < enough; i++) {
+    for (int i = 1; !status && i <= SAMPLES; i++) {
+        if (i > 1 && work_of(f) >= enough) /* one step is taken in any case */
+            break;
         memcpy(f->before, f->z, 2 * p->n * sizeof *f->z);
-        for (int k = 0; !status && k < parts && work_of(f) < enough; k++) {
+        for (int k = 0; !status && k < parts; k++) {
+            if (k > 0 && work_of(f) >= enough)
+                break;
             status = nevh_stepper_apply(s, t, h / parts, f->z, f->z + p->n);
             if (!status)
                 t = begin + (i - 1 + (k + 1.) / parts) * h;
@@ -216,7 +220,7 @@ static nevh_stepper *new_stepper(const trial *f) {
 /* An effect of many is a call of its own, which costs as much as so many of its
    instances. */
 static double cost_of_gradient(const trial *f) {
-    static const double a_call = 8, few = 100;
+    static const double a_call = 40, few = 100;
     double effects = (double)nevh_system_effect_count(f->plan->system);
     return f->instances + a_call * fmax(0, effects - few);
 }

@@ -124,11 +124,25 @@ static char *reason(const char *scheme, const char *message) {
     return text_print("%.*s", (int)length, message);
 }
 
-static void add_refusal(refusals *r, const char *scheme, const char *message) {
-    char *why = reason(scheme, message);
+/* The number of a reason; that of reasons: it is a new one. */
+static size_t find_reason(const refusals *r, const char *why) {
     size_t i = 0;
     while (i < r->reasons.count && strcmp(r->reasons.item[i], why) != 0)
         i++;
+    return i;
+}
+
+static bool is_refusal(const refusals *r, const char *scheme,
+                       const char *message) {
+    char *why = reason(scheme, message);
+    bool known = find_reason(r, why) < r->reasons.count;
+    free(why);
+    return known;
+}
+
+static void add_refusal(refusals *r, const char *scheme, const char *message) {
+    char *why = reason(scheme, message);
+    size_t i = find_reason(r, why);
     if (i == r->reasons.count) {
         list_add(&r->reasons, why);
         list_add(&r->names, scheme);
@@ -185,7 +199,8 @@ typedef struct {
     bool why, all; /* reasons as a column; all rows, not the plan's alone */
     table *table;
     refusals refused;
-    list others; /* that fit */
+    list others;                   /* that fit */
+    const nevh_integrator *fitted; /* the last of them */
 } fitting;
 
 static bool is_planned(const plan *p, const nevh_integrator *scheme) {
@@ -229,27 +244,41 @@ static void add_row(fitting *f, const nevh_integrator *scheme,
         add_claims(f->plan, scheme, f->table);
 }
 
+/* Schemes of one kernel and of the same needs fit alike. */
+static bool fits_as_last(const fitting *f, const nevh_integrator *scheme) {
+    return f->fitted && f->fitted->kernel == scheme->kernel &&
+           f->fitted->needs == scheme->needs &&
+           f->fitted->needs_tolerance == scheme->needs_tolerance;
+}
+
 static void add_scheme(fitting *f, const nevh_integrator *scheme) {
     const plan *p = f->plan;
     nevh_options o = plan_options(p, p->gradients.item[0]);
     const char *name = nevh_integrator_name(scheme);
-    bool chosen = o.gradient_step == 0;
+    bool chosen = o.gradient_step == 0, shown = f->all || is_planned(p, scheme);
+    if (!shown && fits_as_last(f, scheme)) {
+        list_add(&f->others, name);
+        return;
+    }
     if (chosen)
         o.gradient_step = 1e-3; /* nothing is run: no need to choose it */
     if (nevh_integrator_needs_tolerance(scheme))
         o.tolerance = 1e-6;
     nevh_stepper *s = nevh_stepper_new(p->system, scheme, &o);
-    if (chosen && nevh_stepper_status(s)) { /* masses are by differences */
+    if (chosen && nevh_stepper_status(s) && /* masses are by differences */
+        !is_refusal(&f->refused, name, nevh_stepper_message(s))) {
         nevh_stepper_free(s);
         o.gradient_step = 0;
         s = nevh_stepper_new(p->system, scheme, &o);
     }
     int status = nevh_stepper_status(s);
-    if (f->all || is_planned(p, scheme))
+    if (shown)
         add_row(f, scheme, s);
     else if (!status)
         list_add(&f->others, name);
-    if (status)
+    if (!status)
+        f->fitted = scheme;
+    else
         add_refusal(&f->refused, name, nevh_stepper_message(s));
     nevh_stepper_free(s);
 }
