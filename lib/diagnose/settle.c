@@ -227,31 +227,42 @@ static bool only_rounding_grows(const nevh_energy_report *own,
            nevh_energy_verdict(own, INFINITY) == NEVH_BOUNDED;
 }
 
+/* A driven run that meets larger energies later. */
+static nevh_verdict judge_driven(const nevh_energy_report *own,
+                                 const nevh_energy_report *longer) {
+    nevh_verdict verdict = longer->verdict;
+    bool grows = verdict == NEVH_RANDOM_WALK || verdict == NEVH_DRIFTS;
+    bool larger = longer->max > grown * own->max;
+    bool open = verdict == NEVH_BOUNDED ? larger : grows && is_carried(longer);
+    return open ? NEVH_UNDECIDED : verdict;
+}
+
+/* beyond: the error is above the limit; carried: level relative to energies that were
+   met later; spared: it cannot be unstable. */
+static nevh_verdict judge_size(nevh_verdict verdict, bool beyond, bool carried,
+                               bool spared) {
+    if (beyond && verdict != NEVH_BOUNDED &&
+        !(carried && verdict == NEVH_UNDECIDED))
+        verdict = NEVH_UNSTABLE;
+    return spared && verdict == NEVH_UNSTABLE ? NEVH_UNDECIDED : verdict;
+}
+
 /* The verdict of the longer run, as far as it says something of the run itself. */
 static nevh_verdict judge_longer(const nevh_energy_report *own,
                                  const longer_run *l, int status) {
     const nevh_energy_report *longer = &l->report;
-    nevh_verdict verdict = longer->verdict;
     bool small = own->max <= much_smaller * own->limit;
     bool beyond = !(own->max <= fmax(own->limit, own->rounding));
-    bool driven = own->theory == NEVH_THEORY_OPEN && !beyond &&
-                  longer->met > grown * own->met;
-    bool carried = own->theory == NEVH_THEORY_OPEN &&
-                   longer->met > grown * own->met && is_carried(longer);
-    bool grows = verdict == NEVH_RANDOM_WALK || verdict == NEVH_DRIFTS;
+    bool met =
+        own->theory == NEVH_THEORY_OPEN && longer->met > grown * own->met;
+    bool driven = met && !beyond;
     bool rounded =
         is_rounding(own) || (driven && only_rounding_grows(own, longer));
-    bool larger = longer->max > grown * own->max;
-    if (driven &&
-        (verdict == NEVH_BOUNDED ? larger : grows && is_carried(longer)))
-        verdict = NEVH_UNDECIDED;
+    nevh_verdict verdict = driven ? judge_driven(own, longer) : longer->verdict;
     if (verdict == NEVH_UNDECIDED)
         verdict = judge_own(own, longer);
-    if (beyond && verdict != NEVH_BOUNDED &&
-        !(carried && verdict == NEVH_UNDECIDED))
-        verdict = NEVH_UNSTABLE;
-    if ((small || driven) && verdict == NEVH_UNSTABLE)
-        verdict = NEVH_UNDECIDED;
+    verdict =
+        judge_size(verdict, beyond, met && is_carried(longer), small || driven);
     if (leaves(own, l, status))
         verdict = judge_before(own, l);
     return rounded && verdict == NEVH_UNDECIDED ? NEVH_BOUNDED : verdict;

@@ -127,14 +127,16 @@ static nevh_verdict judge_kept(const nevh_energy_report *r, double times) {
     bool line = !keeps && is_line(r);
     bool large = r->max > coarse * r->limit;
     double of_large = times < lasted ? 1.25 : 1.6;
-    bool level = large || !keeps ? is_flat(r, large ? of_large : growth_allowed)
-                                 : is_level(r);
+    bool flat = is_flat(r, large ? of_large : growth_allowed);
+    bool level = large || !keeps ? flat : is_level(r);
     bool ending = !large && keeps && r->rate[0] < nearly_ended;
     if (!line && (level || ending))
         return times < needed(r, times) ? NEVH_UNDECIDED : NEVH_BOUNDED;
-    if (times < lasted || (!line && is_level(r)))
+    if (times < lasted)
         return NEVH_UNDECIDED;
-    return is_level(r) ? NEVH_DRIFTS : judge_growth(r);
+    if (is_level(r))
+        return line ? NEVH_DRIFTS : NEVH_UNDECIDED;
+    return judge_growth(r);
 }
 
 /* The verdict from the errors alone. */

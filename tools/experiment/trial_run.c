@@ -132,25 +132,32 @@ static double look_up_to_stop(trial *f, double t, double h) {
     return t + h;
 }
 
+/* Steps of sample i, to the time *t; a sample alone may use the whole budget for a
+   large H, of which one step is taken in any case. */
+static int take_sample(trial *f, int i, double h, double *t) {
+    const plan *p = f->plan;
+    int parts = f->instances > large ? PARTS : 1, status = NEVH_OK;
+    memcpy(f->before, f->z, 2 * p->n * sizeof *f->z);
+    for (int k = 0; !status && k < parts; k++) {
+        if (k > 0 && work_of(f) >= enough)
+            break;
+        status =
+            nevh_stepper_apply(f->stepper, *t, h / parts, f->z, f->z + p->n);
+        if (!status)
+            *t = p->run->t_start + (i - 1 + (k + 1.) / parts) * h;
+    }
+    return status;
+}
+
 static void run(trial *f) {
     const plan *p = f->plan;
-    nevh_stepper *s = f->stepper;
     double begin = p->run->t_start, t = begin, h = (p->t_end - t) / SAMPLES;
-    int status = nevh_stepper_status(s);
-    /* A sample alone may use the whole budget for a large H. */
-    int parts = f->instances > large ? PARTS : 1;
+    int status = nevh_stepper_status(f->stepper);
     look(f, 0, t);
     for (int i = 1; !status && i <= SAMPLES; i++) {
-        if (i > 1 && work_of(f) >= enough) /* one step is taken in any case */
+        if (i > 1 && work_of(f) >= enough)
             break;
-        memcpy(f->before, f->z, 2 * p->n * sizeof *f->z);
-        for (int k = 0; !status && k < parts; k++) {
-            if (k > 0 && work_of(f) >= enough)
-                break;
-            status = nevh_stepper_apply(s, t, h / parts, f->z, f->z + p->n);
-            if (!status)
-                t = begin + (i - 1 + (k + 1.) / parts) * h;
-        }
+        status = take_sample(f, i, h, &t);
         if (status)
             break;
         if (is_stopped(f, t)) {
@@ -163,7 +170,7 @@ static void run(trial *f) {
     f->found->length = t - begin;
     f->ends = f->ends || status || !(f->found->length >= p->t_end - begin);
     if (status)
-        f->found->failure = plan_why(p, nevh_stepper_message(s));
+        f->found->failure = plan_why(p, nevh_stepper_message(f->stepper));
 }
 
 /* The indicators of nevh chaos, of H itself; where the run is too short for them,
