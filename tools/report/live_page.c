@@ -134,7 +134,7 @@ static int read_kit(char **head, char **tail) {
             "this nevh was built without the live page; to "
             "add it on Debian or Ubuntu: apt-get install "
             "clang lld llvm wasi-libc libclang-rt-dev-wasm32 "
-            "zopfli, then ./quickstart, or configure and make page");
+            "zopfli binaryen, then ./quickstart, or configure and make page");
     else {
         *cut = '\0';
         *head = text;
