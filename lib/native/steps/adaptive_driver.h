@@ -42,7 +42,7 @@ NEVH__INLINE nevh__substeps take_memory(const double *Q, const double *P,
                             .has_first = KEEPS && M[HAS_FIRST_AT] != 0};
 }
 
-/* Those where it ends. */
+/* The state and the memory where a step ends. */
 NEVH__INLINE void keep_memory(const nevh__substeps *l, double *Q, double *P,
                               double *M, const double *y, const double *lost,
                               const double *first) {
