@@ -18,6 +18,7 @@ libnevh_core_la_SOURCES += \
 	integrators/kernels/form_flow_private.h \
 	integrators/kernels/form_flow.c \
 	integrators/kernels/parts_kernel.c \
+	integrators/respa.c \
 	integrators/saba.c \
 	integrators/aba.c \
 	integrators/symplectic_euler.c \

@@ -27,6 +27,7 @@
     X(kahan_li8)                                                               \
     X(suzuki_umeno8)                                                           \
     X(sofroniou_spaletta10)                                                    \
+    X(respa)                                                                   \
     X(wisdom_holman)                                                           \
     X(saba2)                                                                   \
     X(saba3)                                                                   \

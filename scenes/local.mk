@@ -1,6 +1,7 @@
 # Installed, and found there by name.
 scenesdir = $(pkgdatadir)/scenes
 dist_scenes_DATA = \
+	scenes/charged-chain.nevh \
 	scenes/coupled-oscillators.nevh \
 	scenes/coupled-pendulums.nevh \
 	scenes/damped-driven-pendulum.nevh \

@@ -48,6 +48,7 @@ suites = \
 	tests/scheme/check_nystrom \
 	tests/scheme/check_splitting \
 	tests/scheme/check_parts \
+	tests/scheme/check_respa \
 	tests/scheme/check_kepler_flow \
 	tests/scheme/check_published \
 	tests/scheme/check_trees \

@@ -39,6 +39,8 @@ typedef struct {
        be transformed nor accounted for: a stepper that is asked for a transform
        of time, or for a balance of the energy, refuses. */
     bool opaque;
+    /* Effects that are to be fast may be any V(q): it takes these in substeps. */
+    bool has_substeps;
     /* Takes no gradients: a transform of time is refused. */
     bool own_slopes;
     /* True if a step of h, of either sign, of one orbit can be evaluated from such

@@ -67,6 +67,7 @@ typedef struct {
     const char *native_cache; /* the folder of compiled steps, borrowed; NULL:
                                  nevh in $XDG_CACHE_HOME, else in ~/.cache; "":
                                  nothing is kept */
+    size_t substeps; /* of nevh_respa in a step; 0 means 8, at most 10000 */
 } nevh_options;
 
 /* A field is the gradient of H, planned: a system, a gradient method with its

@@ -56,6 +56,13 @@ NEVH_API extern const nevh_integrator *const nevh_saba4;
 NEVH_API extern const nevh_integrator *const nevh_aba84;
 NEVH_API extern const nevh_integrator *const nevh_aba864;
 NEVH_API extern const nevh_integrator *const nevh_aba1064;
+/* The same in the order kick, A, kick, of order 2, where A may have any V(q) that is to
+   be fast, too: these kick in nevh_options.substeps steps of Verlet's, between which
+   the rest of A is moved exactly.  B is evaluated once a step.  The step has to stay
+   below half of the shortest period of A: near it, it resonates. */
+NEVH_API extern const nevh_integrator *const nevh_respa;
+/* The substeps of "+16", as in "respa+16"; 0: the text is none such, or NULL. */
+NEVH_API size_t nevh_substeps_named(const char *text);
 /* Implicit, for any H: Gauss-Legendre, named by order (twice the stages). */
 NEVH_API extern const nevh_integrator *const nevh_midpoint;
 NEVH_API extern const nevh_integrator *const nevh_gauss4;

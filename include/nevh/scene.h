@@ -176,6 +176,7 @@ typedef struct {
     bool match_work;       /* match = work */
     const char *reference; /* NULL: none named */
     const char *transform; /* formula; NULL: none */
+    size_t substeps;       /* of respa; 0: not given */
 } nevh_scene_run;
 /* Valid as long as the system; NULL when the scene was not read. */
 NEVH_API const nevh_scene_run *nevh_scene_run_settings(nevh_scene *);

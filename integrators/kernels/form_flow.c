@@ -103,10 +103,11 @@ static bool visit_entries(const nevh_field *f, entry_fn visit, void *data) {
         const nevh__planned *term = &f->terms[i];
         size_t form = term->nv * (term->nv + 1);
         size_t room = nevh__form_room(&term->term->decl) + form;
-        double *own = term->fast ? nevh__array(room, sizeof *own) : NULL;
-        if (term->fast && !own)
+        bool moves = term->part == NEVH__FORM || term->part == NEVH__CENTRE;
+        double *own = moves ? nevh__array(room, sizeof *own) : NULL;
+        if (moves && !own)
             return false;
-        for (size_t k = 0; term->fast && k < term->term->decl.count; k++)
+        for (size_t k = 0; moves && k < term->term->decl.count; k++)
             visit_instance(f, term, k, own, visit, data);
         free(own);
     }

@@ -5,9 +5,10 @@
 
 #include <nevh/extend.h>
 
-/* The table is a nevh_splitting that begins with a drift: its drifts are flows of
-   A, its kicks those of B = V(t, q). */
-extern const nevh_kernel nevh__parts_kernel;
+/* The table is a nevh_splitting: its drifts are flows of A, its kicks those of
+   B = V(t, q).  With inner terms in A a flow is substeps of Verlet's, of their
+   kicks and flows of the others: a table that begins with a kick. */
+extern const nevh_kernel nevh__parts_kernel, nevh__substeps_kernel;
 
 /* A symmetric scheme by parts of that order, from the weights that a palindrome is
    given by. */

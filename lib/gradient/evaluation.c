@@ -255,23 +255,32 @@ int nevh__field_gradient_padded(nevh_field *f, size_t used,
     return nevh__field_terms(f, at);
 }
 
+/* Inner terms, or all; afterwards gradients are of those that kick again. */
+static int take_terms(nevh_field *f, bool inner, const nevh__places *at) {
+    nevh__planned *term = f->terms, *end = term + f->n_terms;
+    int status = nevh__field_ready(f);
+    for (; term < end; term++) {
+        term->apart = inner && term->part != NEVH__INNER;
+        if (inner && !term->apart)
+            f->inner += term->term->decl.count * at->width;
+    }
+    if (!status)
+        status = nevh__field_terms(f, at);
+    for (term = f->terms; term < end; term++)
+        term->apart = term->part != NEVH__KICK;
+    return status;
+}
+
+int nevh__field_inner_gradient(nevh_field *f, const nevh__places *at) {
+    return take_terms(f, true, at);
+}
+
 int nevh__field_whole_gradient(nevh_field *f, size_t width, const double t[],
                                const double q[], const double p[],
                                double dh_dq[], double dh_dp[]) {
-    bool any = false;
-    for (size_t i = 0; i < f->n_terms; i++) {
-        any |= f->terms[i].apart;
-        f->terms[i].apart = false;
-    }
-    int status = any ? nevh__field_ready(f) : NEVH_OK;
-    if (!any)
-        status = nevh_field_gradient(f, width, t, q, p, dh_dq, dh_dp);
-    else if (!status)
-        status =
-            nevh__field_terms(f, &(nevh__places){width, t, q, p, dh_dq, dh_dp});
-    for (size_t i = 0; any && i < f->n_terms; i++)
-        f->terms[i].apart = f->terms[i].fast;
-    return status;
+    const nevh__places at = {width, t, q, p, dh_dq, dh_dp};
+    return f->divided ? take_terms(f, false, &at)
+                      : nevh_field_gradient(f, width, t, q, p, dh_dq, dh_dp);
 }
 
 int nevh_field_gradient(nevh_field *f, size_t width, const double t[],

@@ -63,7 +63,8 @@ double nevh_field_step(const nevh_field *f, const char *name, size_t instance,
 nevh_counts nevh_field_counts(const nevh_field *f) {
     if (!f)
         return (nevh_counts){0};
-    nevh_counts counts = {.gradients = f->gradients};
+    uint64_t inner = f->instances ? f->inner / f->instances : 0;
+    nevh_counts counts = {.gradients = f->gradients + inner};
     for (size_t i = 0; i < f->n_terms; i++)
         counts.values += f->terms[i].values;
     if (f->instances)

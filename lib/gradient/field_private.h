@@ -4,7 +4,7 @@
 #define NEVH_FIELD_PRIVATE_H
 
 #include "gradient/scatter_map_private.h"
-#include "system/system_private.h"
+#include "system/parts_private.h"
 #include <nevh/gradient.h>
 
 /* The step of one variable, how it was found, and the worst estimates of its
@@ -37,14 +37,14 @@ typedef struct nevh__stencil nevh__stencil;
 
 typedef struct {
     const nevh__term_entry *term;
-    size_t nq, np, nv;  /* variables of an instance: coordinates, momenta */
-    bool fast;          /* its flow is taken by the kernel, */
-    bool apart;         /* and gradients are without it */
-    double *delta;      /* count x nv; NULL without differences */
-    nevh__step *steps;  /* nevh__step_rows x nv */
-    size_t first_step;  /* steps of the terms before it */
-    size_t *vars;       /* nv variables in the order of the passes */
-    nevh__pass pass[2]; /* full order; order 2 */
+    size_t nq, np, nv;    /* variables of an instance: coordinates, momenta */
+    nevh__part_role part; /* KICK where H is not divided */
+    bool apart;           /* gradients are without it */
+    double *delta;        /* count x nv; NULL without differences */
+    nevh__step *steps;    /* nevh__step_rows x nv */
+    size_t first_step;    /* steps of the terms before it */
+    size_t *vars;         /* nv variables in the order of the passes */
+    nevh__pass pass[2];   /* full order; order 2 */
     uint64_t values;
     nevh__stencil *stencil[3]; /* of dH/dq, dH/dp, both; NULL: by blocks */
     struct nevh__constants *constants; /* of evaluations */
@@ -103,6 +103,8 @@ struct nevh_field {
     /* The first term with a share in one half of the gradient, if it has all of it;
        else NULL. */
     const nevh__planned *whole_q, *whole_p;
+    bool divided;    /* there are terms of another part than KICK */
+    uint64_t inner;  /* instances that gradients of inner terms were of */
     bool starved;    /* memory was out when an evaluation was planned */
     bool broadcasts; /* one state may as well be repeated over a vector */
     size_t lanes; /* that have constants of their own; 0: all have the same */
@@ -194,6 +196,8 @@ int nevh__central_blocks(nevh_field *, nevh__planned *, const nevh__places *);
 int nevh__gradient_exact(nevh_field *, nevh__planned *, const nevh__places *);
 int nevh__gradient_complex(nevh_field *, nevh__planned *, const nevh__places *);
 
+/* As nevh_field_gradient, of the terms that are inner ones. */
+int nevh__field_inner_gradient(nevh_field *, const nevh__places *);
 /* As nevh_field_gradient, of all terms, also those that are apart. */
 int nevh__field_whole_gradient(nevh_field *, size_t width, const double t[],
                                const double q[], const double p[],
@@ -282,10 +286,10 @@ int nevh__field_time_slope(nevh_field *, size_t term, const nevh__time_step *,
                            size_t width, const double t[], const double q[],
                            const double p[], double dh_dt[]);
 
-/* As nevh_field_new.  fast: which terms of the system gradients are without; NULL:
-   none. */
+/* As nevh_field_new.  part: of each term of the system: gradients are of those that
+   kick; NULL: all do. */
 nevh_field *nevh__field_of(const nevh_system *, const nevh_options *,
-                           const bool fast[]);
+                           const nevh__part_role part[]);
 /* NEVH_OK, or why the field cannot be used (again). */
 int nevh__field_ready(nevh_field *);
 /* True if the field is planned, is not stale and has not failed. */

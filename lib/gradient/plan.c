@@ -61,11 +61,12 @@ static int check_gradient(nevh_field *f, const nevh_term *term) {
                       term->name, term->effect, f->gradient->wants);
 }
 
-static int plan_term(nevh_field *f, const nevh__term_entry *term, bool fast) {
+static int plan_term(nevh_field *f, const nevh__term_entry *term,
+                     nevh__part_role part) {
     const nevh_term *decl = &term->decl;
     nevh__planned *plan = &f->terms[f->n_terms++];
     *plan = (nevh__planned){.term = term,
-                            .fast = fast,
+                            .part = part,
                             .nq = decl->nq,
                             .np = decl->np,
                             .nv = decl->nq + decl->np};
@@ -219,7 +220,7 @@ static int plan_steps(nevh_field *f, const nevh_options *o) {
 int nevh__field_forget(nevh_field *f, int status) {
     for (size_t i = 0; i < f->n_terms; i++)
         f->terms[i].values = 0;
-    f->gradients = 0;
+    f->gradients = f->inner = 0;
     if (!status)
         f->report = (nevh__report){0};
     return status;
@@ -228,8 +229,8 @@ int nevh__field_forget(nevh_field *f, int status) {
 /* Planning was of all terms; no term has all of a half from here on. */
 static void set_apart(nevh_field *f) {
     for (size_t i = 0; i < f->n_terms; i++)
-        if (f->terms[i].fast) {
-            f->terms[i].apart = true;
+        if (f->terms[i].part != NEVH__KICK) {
+            f->terms[i].apart = f->divided = true;
             f->whole_q = f->whole_p = NULL;
         }
 }
@@ -247,7 +248,8 @@ static int plan_gradient(nevh_field *f, const nevh_options *o) {
     return status;
 }
 
-static int plan_field(nevh_field *f, const nevh_options *o, const bool fast[]) {
+static int plan_field(nevh_field *f, const nevh_options *o,
+                      const nevh__part_role part[]) {
     const nevh_system *s = f->system;
     if (s->report.status)
         return nevh__fail_as(&f->report, &s->report);
@@ -258,7 +260,7 @@ static int plan_field(nevh_field *f, const nevh_options *o, const bool fast[]) {
         f->scale[i] = choose_scale(o, f->n, i);
     for (size_t i = 0; !status && i < s->n_terms; i++)
         if (nevh__term_on(s, s->terms[i]))
-            status = plan_term(f, s->terms[i], fast && fast[i]);
+            status = plan_term(f, s->terms[i], part ? part[i] : NEVH__KICK);
     if (!status)
         status = plan_workspace(f);
     if (status)
@@ -276,7 +278,7 @@ nevh_field *nevh_field_new(const nevh_system *s, const nevh_options *options) {
 }
 
 nevh_field *nevh__field_of(const nevh_system *s, const nevh_options *options,
-                           const bool fast[]) {
+                           const nevh__part_role part[]) {
     static const nevh_options defaults = {0};
     const nevh_options *o = options ? options : &defaults;
     bool fits = s && nevh__width_fits(s->report.status ? 0 : s->n, o->width);
@@ -291,7 +293,7 @@ nevh_field *nevh__field_of(const nevh_system *s, const nevh_options *options,
     f->terms = nevh__array(s->n_terms, sizeof *f->terms);
     fenv_t own; /* as in nevh_stepper_new */
     feholdexcept(&own);
-    int status = f->terms ? plan_field(f, o, fast) : NEVH_ENOMEM;
+    int status = f->terms ? plan_field(f, o, part) : NEVH_ENOMEM;
     fesetenv(&own);
     if (status != NEVH_ENOMEM)
         return f;

@@ -42,11 +42,11 @@ static int stepper_plan_field(nevh_stepper *s) {
     nevh_work *w = &s->work;
     if (w->integrator->needs_formulas) /* it takes no gradient */
         s->options.gradient = nevh__best_gradient(w->system);
-    bool *apart = NULL;
-    int status = nevh__choose_parts(s, &apart);
+    nevh__part_role *part = NULL;
+    int status = nevh__choose_parts(s, &part);
     if (!status)
-        w->field = nevh__field_of(w->system, &s->options, apart);
-    free(apart);
+        w->field = nevh__field_of(w->system, &s->options, part);
+    free(part);
     if (status)
         return status;
     if (!w->field)

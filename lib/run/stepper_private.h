@@ -3,7 +3,7 @@
 #ifndef NEVH_STEPPER_PRIVATE_H
 #define NEVH_STEPPER_PRIVATE_H
 
-#include "system/system_private.h"
+#include "system/parts_private.h"
 #include "native/native_private.h"
 #include <nevh/extend.h>
 
@@ -42,7 +42,7 @@ nevh_stepper *nevh__stepper_watching(const nevh_system *,
                                      const nevh__watched *);
 /* For schemes by parts: chooses the terms whose flow is taken, one element a term of
    the system; else NULL.  To be freed; a failure is recorded. */
-int nevh__choose_parts(nevh_stepper *, bool **apart);
+int nevh__choose_parts(nevh_stepper *, nevh__part_role **part);
 /* Why a scheme does not fit the system, or NEVH_OK. */
 int nevh__check_structure(nevh_stepper *);
 /* A step without looking whether the state is the one last returned. */

@@ -1,7 +1,6 @@
 /* nevh: does a scheme fit a Hamiltonian?
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/stepper_private.h"
-#include "system/parts_private.h"
 #include "system/probe_private.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -120,15 +119,17 @@ static int refuse_parts(nevh_stepper *s, const nevh__parts_fault *fault) {
         fit);
 }
 
-int nevh__choose_parts(nevh_stepper *s, bool **apart) {
+int nevh__choose_parts(nevh_stepper *s, nevh__part_role **part) {
     const nevh_work *w = &s->work;
     nevh__parts_fault fault;
-    *apart = NULL;
+    *part = NULL;
     if (!(w->integrator->needs & NEVH_PARTS))
         return NEVH_OK;
-    *apart = nevh__array(w->system->n_terms, sizeof **apart);
+    *part = nevh__array(w->system->n_terms, sizeof **part);
     int status =
-        *apart ? nevh__parts_find(w->system, *apart, &fault) : NEVH_ENOMEM;
+        *part ? nevh__parts_find(w->system, w->integrator->kernel->has_substeps,
+                                 *part, &fault)
+              : NEVH_ENOMEM;
     if (status == NEVH_ENOMEM)
         return nevh__no_memory(&s->report);
     return status ? refuse_parts(s, &fault) : NEVH_OK;

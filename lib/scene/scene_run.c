@@ -61,7 +61,7 @@ static bool is_integrator(const nevh_scene *s, const char *name) {
     return nevh_integrator_named(name);
 }
 
-/* NAME or NAME+transform */
+/* NAME, NAME+transform or respa+SUBSTEPS */
 static bool check_integrator(nevh_scene *s, const nevh__piece *name) {
     char plain[NEVH__NAME_LENGTH];
     size_t bytes = strcspn(name->text, "+");
@@ -70,7 +70,8 @@ static bool check_integrator(nevh_scene *s, const nevh__piece *name) {
     plain[bytes] = '\0';
     const char *tail = strchr(name->text, '+');
     return (is_integrator(s, plain) &&
-            (!tail || strcmp(tail, "+transform") == 0)) ||
+            (!tail || strcmp(tail, "+transform") == 0 ||
+             (strcmp(plain, "respa") == 0 && nevh_substeps_named(tail)))) ||
            nevh__scene_fail_integrator(s, name, plain);
 }
 
@@ -274,6 +275,19 @@ static bool take_native(nevh_scene *s, nevh__scene_model *m,
     return nevh__scene_fail_word(s, v, "setting of native", v->text, words, 3);
 }
 
+static bool take_substeps(nevh_scene *s, nevh__scene_model *m,
+                          const nevh__piece *v) {
+    double number;
+    if (!nevh__piece_number(s, m, v, &number))
+        return false;
+    bool fits = number >= 1 && number <= 10000 && number == floor(number);
+    m->run.substeps = fits ? (size_t)number : 0;
+    return fits || nevh__scene_fail(s, NEVH_EINVAL, v,
+                                    "this must be a whole number from 1 to "
+                                    "10000, not %.9g",
+                                    number);
+}
+
 #define RUN_KEYS(X)                                                            \
     X(t_start)                                                                 \
     X(t_end)                                                                   \
@@ -287,6 +301,7 @@ static bool take_native(nevh_scene *s, nevh__scene_model *m,
     X(tolerance)                                                               \
     X(energy_scale)                                                            \
     X(native)                                                                  \
+    X(substeps)                                                                \
     X(stop)
 #define RUN_NAME(key) #key,
 #define RUN_TAKE(key) take_##key,

@@ -195,6 +195,7 @@ nevh_ensemble_options nevh__variant_options(const nevh_sweep *s,
                         .tolerance = s->is.tolerance,
                         .transform = s->is.transformed ? m->transform : NULL,
                         .portable = s->is.portable,
+                        .substeps = run->substeps,
                         .native = s->is.native,
                         .native_cache = s->is.native_cache};
     double t_end = s->is.t_end != 0 ? s->is.t_end : run->t_end;

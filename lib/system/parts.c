@@ -209,21 +209,29 @@ static int parts_choose(const nevh_system *s, const nevh__term_entry *term,
 
 /* NULL: none. */
 static const char *reason_of(const nevh_system *s, const nevh__term_entry *term,
-                             nevh__part_role part) {
+                             bool substeps, nevh__part_role part) {
     const nevh_term *decl = &term->decl;
     nevh_speed speed = s->effects[term->effect].speed;
     return part != NEVH__KICK || !(decl->nq + decl->np) ? NULL
-           : speed == NEVH_FAST ? "is to be fast and is no such form"
-           : !decl->np          ? NULL
+           : speed == NEVH_FAST                         ? substeps && decl->time
+                                                              ? "is to be fast and reads the time"
+                                                              : "is to be fast and is no such form"
+           : !decl->np                                  ? NULL
            : speed == NEVH_SLOW ? "is to be slow and reads momenta"
            : decl->time         ? "reads momenta and the time"
                                 : "reads momenta and is no such form";
 }
 
-int nevh__parts_find(const nevh_system *s, bool fast[],
-                     nevh__parts_fault *fault) {
-    nevh__part_role *part = nevh__array(s->n_terms, sizeof *part);
-    int status = part ? NEVH_OK : NEVH_ENOMEM;
+/* A term that is to be fast and is left to kick. */
+static bool is_inner(const nevh_system *s, const nevh__term_entry *term) {
+    const nevh_term *decl = &term->decl;
+    return nevh__term_on(s, term) && decl->nq && !decl->np && !decl->time &&
+           s->effects[term->effect].speed == NEVH_FAST;
+}
+
+int nevh__parts_find(const nevh_system *s, bool substeps,
+                     nevh__part_role part[], nevh__parts_fault *fault) {
+    int status = NEVH_OK;
     bool any = false;
     *fault = (nevh__parts_fault){NULL, NULL};
     for (size_t i = 0; !status && i < s->n_terms; i++)
@@ -232,28 +240,29 @@ int nevh__parts_find(const nevh_system *s, bool fast[],
         status = nevh__centres_choose(s, part);
     for (size_t i = 0; !status && i < s->n_terms; i++) {
         const nevh__term_entry *term = s->terms[i];
-        const char *reason =
-            nevh__term_on(s, term) ? reason_of(s, term, part[i]) : NULL;
+        any |= part[i] != NEVH__KICK;
+        if (substeps && part[i] == NEVH__KICK && is_inner(s, term))
+            part[i] = NEVH__INNER;
+        const char *reason = nevh__term_on(s, term)
+                                 ? reason_of(s, term, substeps, part[i])
+                                 : NULL;
         if (reason && !fault->term)
             *fault = (nevh__parts_fault){&term->decl, reason};
-        fast[i] = part[i] != NEVH__KICK;
-        any |= fast[i];
     }
-    free(part);
     return status ? status : any && !fault->term ? NEVH_OK : NEVH_ESTRUCT;
 }
 
 /* Instances of an effect's terms that are on, among the fast and among others; false:
    there is no such effect. */
 static bool parts_count(const nevh_system *s, const char *effect,
-                        const bool fast[], size_t counts[2]) {
+                        const nevh__part_role part[], size_t counts[2]) {
     bool known = false;
     for (size_t i = 0; effect && i < s->n_effects; i++)
         known |= strcmp(s->effects[i].name, effect) == 0;
     for (size_t i = 0; known && i < s->n_terms; i++) {
         const nevh_term *decl = &s->terms[i]->decl;
         if (nevh__term_on(s, s->terms[i]) && strcmp(decl->effect, effect) == 0)
-            counts[fast[i] ? 0 : 1] += decl->count;
+            counts[part[i] == NEVH__KICK] += decl->count;
     }
     return known;
 }
@@ -265,8 +274,9 @@ int nevh_system_parts(const nevh_system *s, const char *effect, size_t *fast,
     int status = nevh_system_status(s);
     if (status)
         return status;
-    bool *all = nevh__array(s->n_terms, sizeof *all), known = false;
-    status = all ? nevh__parts_find(s, all, &fault) : NEVH_ENOMEM;
+    nevh__part_role *all = nevh__array(s->n_terms, sizeof *all);
+    bool known = false;
+    status = all ? nevh__parts_find(s, false, all, &fault) : NEVH_ENOMEM;
     if (status != NEVH_ENOMEM) {
         known = parts_count(s, effect, all, counts);
         if (term)

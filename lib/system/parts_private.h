@@ -15,14 +15,22 @@ typedef struct {
     const char *reason;    /* "reads momenta and is no quadratic form ..." */
 } nevh__parts_fault;
 
-typedef enum { NEVH__KICK, NEVH__FORM, NEVH__CENTRE } nevh__part_role;
+/* Inner terms are any V(q) that is to be fast: these kick in substeps of A. */
+typedef enum {
+    NEVH__KICK,
+    NEVH__FORM,
+    NEVH__CENTRE,
+    NEVH__INNER
+} nevh__part_role;
 
 /* Chooses the terms of A.
-   fast     out, one for each term of the system
+   substeps whether terms may be inner ones
+   part     out, one for each term of the system
    returns  NEVH_OK; NEVH_ESTRUCT where what reads momenta is no such form, or
             nothing is; NEVH_ENOMEM
    cost     a few gradients of each instance */
-int nevh__parts_find(const nevh_system *, bool fast[], nevh__parts_fault *);
+int nevh__parts_find(const nevh_system *, bool substeps, nevh__part_role part[],
+                     nevh__parts_fault *);
 
 /* Derivatives of an instance of such a term: of variable i by variable j at
    form[i * (nv + 1) + j], and at 0 in the last column; nv = nq + np variables.

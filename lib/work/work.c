@@ -112,6 +112,11 @@ int nevh__work_gradient_padded(nevh_work *w, size_t used,
                         : NEVH_OK;
 }
 
+int nevh__work_inner_gradient(nevh_work *w, const nevh__places *at) {
+    int status = nevh__field_inner_gradient(w->field, at);
+    return status ? nevh__work_fail_field(w, status) : NEVH_OK;
+}
+
 int nevh_work_value(nevh_work *w, size_t points, const double t[],
                     const double q[], const double p[], double h[]) {
     if (w->transform)

@@ -29,6 +29,9 @@ int nevh__work_noise(nevh_work *, double t, const double q[], const double p[],
 /* nevh_work_gradient, where only `used` points count: others fill vectors. */
 int nevh__work_gradient_padded(nevh_work *, size_t used, const nevh__places *);
 
+/* nevh__field_inner_gradient; a failure is recorded. */
+int nevh__work_inner_gradient(nevh_work *, const nevh__places *);
+
 /* Planned gradients of H.  How a kernel's rows hold them is decided here alone.
 
    The numbers of a row of so many points: whole vectors, which other points

@@ -73,7 +73,8 @@ class _Options(c.Structure):
                 ("width", c.c_size_t), ("tolerance", c.c_double),
                 ("transform", c.c_void_p), ("binding", c.c_double),
                 ("portable", c.c_bool), ("balance", c.c_bool), ("native", c.c_int),
-                ("steps_foreseen", c.c_double), ("native_cache", c.c_char_p)]
+                ("steps_foreseen", c.c_double), ("native_cache", c.c_char_p),
+                ("substeps", c.c_size_t)]
 
 
 class _Observer(c.Structure):
@@ -117,7 +118,8 @@ class _Run(c.Structure):
                  ("gradient", c.POINTER(c.c_char_p)), ("gradient_step", c.c_double),
                  ("gradient_steps", c.c_void_p), ("energy_scale", c.c_double),
                  ("native", c.c_int), ("match_work", c.c_bool),
-                 ("reference", c.c_char_p), ("transform", c.c_char_p)])
+                 ("reference", c.c_char_p), ("transform", c.c_char_p),
+                 ("substeps", c.c_size_t)])
 
 
 class _SweepOptions(c.Structure):

@@ -90,4 +90,5 @@ looks = (
     "saba4",
     "aba84",
     "aba1064",
+    "respa",
 )

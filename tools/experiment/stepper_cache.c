@@ -54,12 +54,13 @@ static double steps_foreseen(const plan *p, const row *r) {
 }
 
 static nevh_stepper *plan_new(const plan *p, const row *r, bool balance) {
-    nevh_options o = plan_options(p, r->gradient);
-    o.transform = plan_transform(p, r->integrator);
+    const nevh_integrator *scheme;
+    nevh_options o =
+        plan_scheme_options(p, r->integrator, r->gradient, &scheme);
     o.tolerance = r->tolerance;
     o.balance = balance;
     o.steps_foreseen = steps_foreseen(p, r);
-    nevh_stepper *s = nevh_stepper_new(p->system, r->scheme, &o);
+    nevh_stepper *s = nevh_stepper_new(p->system, scheme, &o);
     plan_native_report(s);
     return s;
 }

@@ -100,6 +100,7 @@
     X("saba3")                                                                 \
     X("saba4")                                                                 \
     X("aba84")                                                                 \
-    X("aba1064")
+    X("aba1064")                                                               \
+    X("respa")
 
 #endif

@@ -20,11 +20,18 @@ static bool fits(const plan *p, const nevh_integrator *scheme) {
     return !status;
 }
 
+/* True if effects that are to be fast are no forms. */
+static bool takes_substeps(const plan *p) {
+    return fits(p, nevh_respa) && !fits(p, nevh_wisdom_holman);
+}
+
 static void fitting_integrators(const plan *p, list *names) {
     const nevh_integrator *scheme;
     for (size_t i = 0; (scheme = plan_scheme_at(p, i)); i++)
         if (fits(p, scheme))
-            list_add(names, nevh_integrator_name(scheme));
+            list_split(names, scheme == nevh_respa && takes_substeps(p)
+                                  ? "respa+2,respa+4,respa+8,respa+16"
+                                  : nevh_integrator_name(scheme));
 }
 
 bool gradient_fits(const plan *p, const char *gradient, char **why) {
