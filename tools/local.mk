@@ -108,6 +108,7 @@ tools_nevh_SOURCES = \
 	tools/inspect/impact.c \
 	tools/inspect/impact_orbit.c \
 	tools/inspect/impact_plot.c \
+	tools/inspect/needed.c \
 	tools/cli/new.c \
 	tools/cli/sample.c \
 	tools/cli/list.c \

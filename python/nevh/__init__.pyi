@@ -128,11 +128,12 @@ def effects(scene: Any, integrators: str | Sequence[str] | None = None, dt: floa
         with_effects: str | Sequence[str] | None = None, without_effects: str |
         Sequence[str] | None = None, parameters: Mapping[str, Any] | None = None, y0:
         Mapping[str, float | str] | Sequence[float] | None = None, gradient: str |
-        Sequence[str] | None = None, gradient_step: float | None = None, portable: bool |
-        None = None, plot: str | PathLike[str] | None = None, plot_narrow: bool | None =
-        None, keep_plot_script: str | PathLike[str] | None = None, allow_code: bool | None
-        = None, impact: bool | None = None, coordinates: Sequence[str] | None = None,
-        options: Sequence[str] = ()) -> Table: ...
+        Sequence[str] | None = None, gradient_step: float | None = None, error: float |
+        None = None, portable: bool | None = None, plot: str | PathLike[str] | None =
+        None, plot_narrow: bool | None = None, keep_plot_script: str | PathLike[str] |
+        None = None, allow_code: bool | None = None, impact: bool | None = None, needed:
+        float | str | None = None, coordinates: Sequence[str] | None = None, options:
+        Sequence[str] = ()) -> Table: ...
 def export(scene: Any, integrators: str | Sequence[str] | None = None, dt: float | str |
         Sequence[float | str] | None = None, t_end: float | str | None = None, *,
         with_effects: str | Sequence[str] | None = None, without_effects: str |

@@ -145,4 +145,50 @@ printf '[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = acos(x)\n[run]
 t_end = 2\ndt = 0.1\nintegrators = verlet\n' >$work/edge.nevh
 exits 1 effects $work/edge.nevh --impact
 has '^With V the run fails'
+
+# The fewest effects that keep an observable, as by runs of all subsets; pull and push
+# cancel.
+cat >$work/needed.nevh <<'END'
+[coordinates]
+x = 1
+y = 0.5
+[effects]
+kinetic = (p_x^2 + p_y^2)/2
+spring = x^2/2 + y^2/2
+pull = 0.3*x
+push = -0.29999*x
+twist = 1e-3*x^2*y
+small = 1e-7*x^4
+[run]
+t_end = 10
+dt = 0.02
+integrators = verlet
+END
+column() { grep -v '^#' $work/out | cut -d, -f2; }
+exits 0 run $work/needed.nevh --samples 50
+column >$work/whole
+for set in $(awk 'BEGIN { for (i = 0; i < 16; i++) print i }'); do
+    off=
+    for name in pull:1 push:2 twist:4 small:8; do
+        test $((set / ${name#*:} % 2)) = 0 || off=$off,${name%:*}
+    done
+    exits 0 run $work/needed.nevh --samples 50 ${off:+--without ${off#,}}
+    column | paste $work/whole - | awk -v off="$off" 'NR > 1 {
+        d = $1 > $2 ? $1 - $2 : $2 - $1; most = d > most ? d : most
+        low = $1 < low ? $1 : low; high = $1 > high ? $1 : high }
+        END { n = split(off, all, ",") - 1; print n < 0 ? 0 : n, most/(high - low), off }'
+done >$work/subsets
+for error in 0.3 0.01 1e-4 1e-9; do
+    fewest=$(awk -v e=$error '$2 <= e && $1 > n { n = $1; off = $3 }
+        END { print off }' $work/subsets)
+    exits 0 effects $work/needed.nevh --needed x --error $error
+    found=$(awk '$2 == "no" { off = off "," $1 } END { print off }' $work/out)
+    test "$found" = "$fewest" ||
+        { fails "leaves out '$found', not '$fewest'"; cat $work/subsets; }
+    has '^needed: kinetic, spring'
+done
+exits 2 effects $work/needed.nevh --needed x
+says 'needs --error'
+exits 2 effects $work/needed.nevh --needed xx --error 1e-3
+says 'xx'
 exit $status

@@ -172,6 +172,9 @@ const option_row option_rows[] = {
      "compile and run C code that the scene names"},
     {"impact", NULL, FLAG(impact), NULL,
      "what each effect changes in the orbit, costs, and rules out"},
+    {"needed", "FORMULA", FORMULA(observable), NULL,
+     "the fewest effects that keep this formula or observable within --error of "
+     "its range"},
     {"all", NULL, FLAG(all), NULL,
      "list: also the names in other packages, and sources. check: all "
      "integrators. hard: each run. report: all parts"},

@@ -175,5 +175,7 @@ void plan_set_scale(const plan *, nevh_energy *);
 
 /* impact.c: what nevh effects --impact prints. */
 int impact(const options *, plan *);
+/* needed.c: what nevh effects --needed prints. */
+int needed(const options *, plan *);
 
 #endif

@@ -244,7 +244,9 @@ static int effects(const options *o) {
     if (!status && o->file)
         status = output_check(o->file);
     if (!status)
-        status = o->impact ? impact(o, &p) : effects_of(o, &p);
+        status = o->impact       ? impact(o, &p)
+                 : o->observable ? needed(o, &p)
+                                 : effects_of(o, &p);
     plan_free(&p);
     return status;
 }
@@ -254,10 +256,10 @@ const command effects_command = {
     .operand = "SCENE",
     .brief = "the effects, what each reads, changes and costs",
     .help =
-        "each effect: on or off, what it reads, evaluations, time; with --impact what it changes",
+        "each effect: on or off, what it reads, evaluations, time; with --impact what it changes; with --needed which of them are called for",
     .examples = "effects elastic-pendulum\n"
                 "effects damped-driven-pendulum --t-end 20 --impact",
-    .options = "SCENE STEPS TABLE PLOT impact",
+    .options = "SCENE STEPS TABLE PLOT impact needed error",
     .columns = "effect,state,reads,friction,instances,evaluations,"
                "share,ns each,share of time",
     .run = effects,

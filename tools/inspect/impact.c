@@ -73,9 +73,7 @@ typedef struct {
     bool ran;
 } both;
 
-/* Switches an effect; the plan follows.  The start stays that of the scene as
-   it is, also where initial velocities would give other momenta. */
-static bool switch_effect(plan *p, const char *effect, bool on) {
+bool impact_switch(plan *p, const char *effect, bool on) {
     if (nevh_scene_enable(p->scene, effect, on))
         return false;
     p->system = nevh_scene_system(p->scene);
@@ -93,7 +91,7 @@ static void draw(plot **to, plan *p, const char *effect, const both *b) {
     trace dense[2];
     difference d = trace_difference(&b->trace[0], &b->trace[1]);
     for (int on = 0; on < 2; on++) {
-        switch_effect(p, effect, on);
+        impact_switch(p, effect, on);
         dense[on] = trace_dense(p, b->integrator);
     }
     impact_draw(to, p, effect, dense, &d);
@@ -103,7 +101,7 @@ static void draw(plot **to, plan *p, const char *effect, const both *b) {
 
 static bool look(plan *p, const char *effect, both *b) {
     for (int on = 0; on < 2; on++) {
-        if (!switch_effect(p, effect, on))
+        if (!impact_switch(p, effect, on))
             return false;
         b->choice[on] = choices(p);
         b->structure[on] = plan_structure(p);
@@ -116,7 +114,7 @@ static bool look(plan *p, const char *effect, both *b) {
             b->integrator = p->integrators.item[i];
     b->ran = b->integrator;
     for (int on = 0; b->integrator && on < 2; on++) {
-        switch_effect(p, effect, on);
+        impact_switch(p, effect, on);
         b->trace[on] = trace_run(p, b->integrator);
         b->ran &= !b->trace[on].status;
     }
@@ -282,7 +280,7 @@ static int add_all(const options *o, plan *p, page *result, plot **to) {
         if (b.integrator && !b.ran && !why)
             why = text_print("%s", b.trace[!b.trace[0].status].message);
         free_both(&b);
-        switch_effect(p, effect, on);
+        impact_switch(p, effect, on);
         free(effect);
     }
     if (apart)

@@ -28,6 +28,10 @@ trace trace_dense(const plan *, const char *integrator);
 void trace_free(trace *);
 difference trace_difference(const trace *, const trace *);
 
+/* Switches an effect; the plan follows.  The start stays that of the scene as it is,
+   also where initial velocities would give other momenta.  Returns whether it could. */
+bool impact_switch(plan *, const char *effect, bool on);
+
 /* impact_plot.c: a panel, the first making the plot: the coordinate that an
    effect changes most, without it and with it.
    dense  without, with */
