@@ -6,6 +6,8 @@
    each time, of one whose second derivative jumps 4 times, and 2 times at a kink.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/kinks_private.h"
+#include "diagnose/energy_private.h"
+#include "expression/tape_private.h"
 #include <fenv.h>
 #include <float.h>
 #include <math.h>
@@ -14,6 +16,16 @@ enum { MOST_HALVES = 36, COMPARED = 4, POINTS = 7 };
 /* Third differences, over those COMPARED halves before: between 2^-12 and 2^-8. */
 static const double smooth = 0x1p-10;
 static const double resolved = 0x1p10; /* units of rounding */
+
+bool nevh__theory_doubts(const nevh_system *s) {
+    for (size_t i = 0; i < s->n_terms; i++) {
+        const nevh_term *term = &s->terms[i]->decl;
+        if (nevh__term_on(s, s->terms[i]) && (term->block != nevh__tape_block ||
+                                              nevh__tape_touches(term->params)))
+            return true;
+    }
+    return false;
+}
 
 typedef struct {
     nevh_field *field;

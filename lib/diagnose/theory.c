@@ -15,16 +15,6 @@ static bool is_rough(const nevh_system *s) {
     return false;
 }
 
-bool nevh__theory_doubts(const nevh_system *s) {
-    for (size_t i = 0; i < s->n_terms; i++) {
-        const nevh_term *term = &s->terms[i]->decl;
-        if (nevh__term_on(s, s->terms[i]) && (term->block != nevh__tape_block ||
-                                              nevh__tape_touches(term->params)))
-            return true;
-    }
-    return false;
-}
-
 nevh_theory nevh__theory_of(const nevh_stepper *s) {
     const nevh_integrator *scheme = s->work.integrator;
     const nevh_system *system = s->work.system;
