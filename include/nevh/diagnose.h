@@ -253,10 +253,10 @@ NEVH_API int nevh_reversal_defect(nevh_stepper *, double t, double h,
    frequency omega, H = (p^2 + omega^2 q^2)/2: there the spectral radius of the
    step's matrix first passes 1.  2 for Verlet's method, 2 sqrt(2) for rk4; 0 for
    schemes whose orbits grow at every step, as those of euler, heun and gsl-rkf45
-   do; INFINITY where none is found up to 16, as with Gauss-Legendre.  Of Tao's methods, in a space of
-   their own, what 500 steps show, to 1/32.  NAN for schemes that take no fixed
-   step.  A nonlinear H has resonances below that, of which 2 pi/3 and pi/2 per
-   step matter most.
+   do; INFINITY where none is found up to 16, as with Gauss-Legendre.  Of Tao's
+   methods, in a space of their own, what 500 steps show, to 1/32.  NAN for respa,
+   and for schemes that take no fixed step.  A nonlinear H has resonances below
+   that, of which 2 pi/3 and pi/2 per step matter most.
    cost     some thousand steps of one degree of freedom, never more than 2e5;
             each returns with all schemes of nevh, and one that does not is not
             interrupted.  Thread-safe */

@@ -201,10 +201,11 @@ static double search_extended(const oscillator *o) {
     return INFINITY;
 }
 
-/* True if the scheme's steps are matrices. */
+/* True if the scheme's steps of one oscillator are matrices, which tell what it bears:
+   of substeps the limit is a resonance between two groups of effects. */
 static bool is_linear(const nevh_integrator *scheme) {
     return scheme && !nevh_integrator_needs_tolerance(scheme) &&
-           !nevh_integrator_own_time(scheme) &&
+           !scheme->kernel->has_substeps && !nevh_integrator_own_time(scheme) &&
            nevh_integrator_symplectic(scheme) != NEVH_EXTENDED;
 }
 
