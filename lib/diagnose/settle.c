@@ -233,8 +233,9 @@ static nevh_verdict judge_driven(const nevh_energy_report *own,
     nevh_verdict verdict = longer->verdict;
     bool grows = verdict == NEVH_RANDOM_WALK || verdict == NEVH_DRIFTS;
     bool larger = longer->max > grown * own->max;
-    bool open = verdict == NEVH_BOUNDED ? larger : grows && is_carried(longer);
-    return open ? NEVH_UNDECIDED : verdict;
+    bool doubtful =
+        verdict == NEVH_BOUNDED ? larger : grows && is_carried(longer);
+    return doubtful ? NEVH_UNDECIDED : verdict;
 }
 
 /* beyond: the error is above the limit; carried: level relative to energies that were
