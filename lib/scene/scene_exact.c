@@ -2,7 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/scene_private.h"
 #include "taylor/certain_private.h"
-#include <gsl/gsl_linalg.h>
+#include "implicit/implicit_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -77,7 +77,7 @@ static double scene_exact_rescale(search *s) {
 }
 
 /* The derivatives of velocities by momenta. */
-static void scene_exact_find_slopes(search *s, gsl_matrix *slope,
+static void scene_exact_find_slopes(search *s, double slope[],
                                     nevh__wide before[]) {
     size_t n = s->m->n;
     for (size_t i = 0; i < s->count; i++)
@@ -88,52 +88,44 @@ static void scene_exact_find_slopes(search *s, gsl_matrix *slope,
         *p += step;
         scene_exact_measure(s);
         for (size_t i = 0; i < s->count; i++)
-            gsl_matrix_set(
-                slope, i, j,
-                (double)((s->rows[2 * n + s->row[i]] - before[i]) / step));
+            slope[i * s->count + j] =
+                (double)((s->rows[2 * n + s->row[i]] - before[i]) / step);
         *p = kept;
     }
     scene_exact_measure(s);
 }
 
 /* Newton's iteration with one matrix. */
-static double scene_exact_iterate(search *s, gsl_matrix *slope,
-                                  gsl_permutation *swaps, gsl_vector *x) {
-    int sign;
+static double scene_exact_iterate(search *s, double slope[], size_t pivot[],
+                                  double x[]) {
     double off = scene_exact_measure(s);
-    gsl_linalg_LU_decomp(slope, swaps, &sign);
-    for (size_t i = 0; i < s->count; i++)
-        if (gsl_matrix_get(slope, i, i) == 0)
-            return off;
+    if (!nevh__factor(s->count, slope, pivot))
+        return off;
     for (int i = 0; i < ROUNDS && off > solved; i++) {
         for (size_t j = 0; j < s->count; j++)
-            gsl_vector_set(x, j, (double)s->off[j]);
-        gsl_linalg_LU_svx(slope, swaps, x);
+            x[j] = (double)s->off[j];
+        nevh__solve(s->count, slope, pivot, x);
         for (size_t j = 0; j < s->count; j++)
-            s->state[s->m->n + s->row[j]] += gsl_vector_get(x, j);
+            s->state[s->m->n + s->row[j]] += x[j];
         off = scene_exact_measure(s);
     }
     return off;
 }
 
-/* GSL aborts when memory is out: so ask first for as much as it takes. */
 static int solve_together(search *s, double *off) {
     size_t n = s->count;
-    void *trial = nevh__array(n * (n + 8) + 64, sizeof(double));
+    double *slope = nevh__array(n * (n + 1), sizeof *slope);
+    size_t *pivot = nevh__array(n, sizeof *pivot);
     nevh__wide *before = nevh__array(n, sizeof *before);
-    free(trial);
-    if (trial && before) {
-        gsl_matrix *slope = gsl_matrix_alloc(n, n);
-        gsl_permutation *swaps = gsl_permutation_alloc(n);
-        gsl_vector *x = gsl_vector_alloc(n);
+    bool fine = slope && pivot && before;
+    if (fine) {
         scene_exact_find_slopes(s, slope, before);
-        *off = scene_exact_iterate(s, slope, swaps, x);
-        gsl_matrix_free(slope);
-        gsl_permutation_free(swaps);
-        gsl_vector_free(x);
+        *off = scene_exact_iterate(s, slope, pivot, slope + n * n);
     }
+    free(slope);
+    free(pivot);
     free(before);
-    return trial && before ? NEVH_OK : NEVH_ENOMEM;
+    return fine ? NEVH_OK : NEVH_ENOMEM;
 }
 
 static int scene_exact_solve(nevh_scene *scene, search *s) {
