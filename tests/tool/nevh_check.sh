@@ -184,4 +184,14 @@ exits 0 check $work/central.nevh --start p_y=0.5,y=0.001,x=0.5,p_x=0.001 --forma
 lacks '# L of'
 exits 0 check kepler --format csv
 lacks 'not conserved'
+# Parts are told of forces that are finite: B is empty in Kepler's problem, and not at
+# the edge of the domain of a root.
+has '^# +B is 0: steps of any length are exact'
+printf '[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = sqrt(1 - x^2)\n%s\n' \
+    '[run]
+t_end = 1
+dt = 0.1
+integrators = verlet' >$work/edge.nevh
+exits 0 check $work/edge.nevh --format csv
+lacks 'B is 0'
 exit $status

@@ -10,6 +10,7 @@ typedef struct {
     size_t n;
     double *whole, *part; /* at one state */
     double *most;         /* of A, and of B behind it */
+    size_t states;
 } forces;
 
 static int take_forces(void *data, size_t step, double t, const double q[],
@@ -19,6 +20,7 @@ static int take_forces(void *data, size_t step, double t, const double q[],
     if (nevh_field_gradient(f->all, 1, &t, q, p, f->whole, NULL) ||
         nevh_field_gradient(f->slow, 1, &t, q, p, f->part, NULL))
         return 1;
+    f->states++;
     for (size_t k = 0; k < f->n; k++) {
         f->most[k] = fmax(f->most[k], fabs(f->whole[k] - f->part[k]));
         f->most[f->n + k] = fmax(f->most[f->n + k], fabs(f->part[k]));
@@ -27,11 +29,11 @@ static int take_forces(void *data, size_t step, double t, const double q[],
 }
 
 /* The largest force of B over that of A on the same coordinate; infinite where A
-   has none. */
+   has none, or B is not finite at the start. */
 static double ratio_along(const plan *p, nevh_stepper *s) {
     enum { STEPS = 1000 };
     nevh_options o = plan_options(p, p->gradients.item[0]);
-    double *room = tool_allocate(6 * p->n, sizeof *room), worst = 0;
+    double *room = tool_allocate(6 * p->n, sizeof *room), worst;
     forces f = {.all = nevh_field_new(p->system, &o),
                 .slow = nevh_stepper_field(s),
                 .n = p->n,
@@ -46,6 +48,7 @@ static double ratio_along(const plan *p, nevh_stepper *s) {
     double h = p->dt[0], steps = fmin(STEPS, ceil((p->t_end - o.t) / h));
     nevh_observer watch = {take_forces, &f, 1};
     nevh_run(s, o.t, h, (size_t)fmax(1, steps), q, momenta, &watch, 1);
+    worst = f.states ? 0 : INFINITY;
     for (size_t k = 0; k < p->n; k++)
         if (f.most[p->n + k] > 0)
             worst = fmax(worst, f.most[p->n + k] / f.most[k]);
