@@ -212,11 +212,12 @@ static const char *reason_of(const nevh_system *s, const nevh__term_entry *term,
                              bool substeps, nevh__part_role part) {
     const nevh_term *decl = &term->decl;
     nevh_speed speed = s->effects[term->effect].speed;
-    return part != NEVH__KICK || !(decl->nq + decl->np) ? NULL
-           : speed == NEVH_FAST                         ? substeps && decl->time
-                                                              ? "is to be fast and reads the time"
-                                                              : "is to be fast and is no such form"
-           : !decl->np                                  ? NULL
+    if (part != NEVH__KICK || !(decl->nq + decl->np))
+        return NULL;
+    if (speed == NEVH_FAST)
+        return substeps && decl->time ? "is to be fast and reads the time"
+                                      : "is to be fast and is no such form";
+    return !decl->np            ? NULL
            : speed == NEVH_SLOW ? "is to be slow and reads momenta"
            : decl->time         ? "reads momenta and the time"
                                 : "reads momenta and is no such form";
