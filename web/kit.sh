@@ -43,21 +43,24 @@ cat "$folder/page.css" || exit 1
 printf '</style>\n</head>\n<body>\n<main>\n'
 cat "$folder/page.html" || exit 1
 printf '</main>\n<script type="application/json" id="given">\n@SCENE@\n</script>\n'
-# Smaller by 5 %, where zopfli is.
-zopfli -c "$module" 2>/dev/null >"$module.gz" ||
-    gzip -9 -n -c "$module" >"$module.gz" || exit 1
-packed module <"$module.gz" || exit 1
+# put ID FILE: smaller by 5 %, where zopfli is.
+put() {
+    zopfli -c "$2" 2>/dev/null >"$module.gz" ||
+        gzip -9 -n -c "$2" >"$module.gz" || exit 1
+    packed "$1" <"$module.gz" || exit 1
+}
+put module "$module"
 # Without comments, and spaces before lines.
 short() {
     sed 's/^ *//; /^\/\//d' "$@"
 }
-short "$folder/engine.js" | gzip -9 -n | packed engine || exit 1
+short "$folder/engine.js" >"$module.text" && put engine "$module.text"
 scripts() {
     awk -f "$folder/looks.awk" "$folder/../tools/plot/looks.h"
     short "$folder/view.js" "$folder/page.js" "$folder/draw.js" \
         "$folder/section.js" "$folder/try.js" "$folder/controls.js"
 }
-scripts | gzip -9 -n | packed scripts || exit 1
+scripts >"$module.text" && put scripts "$module.text"
 printf '<script>\n'
 cat "$folder/unpack.js" || exit 1
 printf '</script>\n</body>\n</html>\n'

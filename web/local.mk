@@ -41,7 +41,7 @@ install-data-local:
 uninstall-local:
 	rm -f "$(DESTDIR)$(pkgdatadir)/page.html"
 CLEANFILES += web/objects/*.o web/objects/*.log web/objects/library.a \
-	web/objects/nevh.wasm web/objects/nevh.wasm.gz web/objects/include/gsl
+	web/objects/nevh.wasm web/objects/nevh.wasm.gz web/objects/nevh.wasm.text web/objects/include/gsl
 
 # Pages of all scenes that ship, with an index, as they can be put on a site.
 .PHONY: gallery

@@ -4,10 +4,10 @@
    a is the matrix J (K, g) with a row of zeros for the 1.  D is a Taylor series
    over t / 2^k, and D(2 t) = 2 D(t) + D(t)^2 [C. Moler, C. Van Loan, Nineteen
    dubious ways to compute the exponential of a matrix, twenty-five years later,
-   SIAM Rev. 45 (2003) 3-49, method 3], in long double with momenta in units in
-   which both halves of K are about as large.  Elements are kept in two doubles,
-   since a rounding of D is the same in each step, and energies of the form would
-   drift by it.
+   SIAM Rev. 45 (2003) 3-49, method 3], in long double (double in WebAssembly, where
+   that is software), with momenta in units in which both halves of K are about as
+   large.  Elements are kept in two doubles, since a rounding of D is the same in each
+   step, and energies of the form would drift by it.
 
    Variables of a block stand as q, p of one coordinate after the other, so that
    chains have banded matrices: elements below the last digits are left out.
@@ -18,7 +18,7 @@
 #include "kepler_flow_private.h"
 #include "system/parts_private.h"
 #include <float.h>
-#include <math.h>
+#include <tgmath.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,7 +28,7 @@ enum { MOST_BLOCK = 128, SETS = 2, TERMS = 18, MOST_HALVINGS = 200 };
 typedef struct {
     size_t count;
     const size_t *index; /* coordinates of the system */
-    long double *a;      /* m x (m + 1), by rows: dz/dt = a (z, 1) */
+    nevh__extended *a;   /* m x (m + 1), by rows: dz/dt = a (z, 1) */
     int *units;          /* m: powers of two */
     size_t at;           /* of its elements in a set */
     double k;            /* of -k/|q| */
@@ -46,7 +46,7 @@ struct nevh__form_flow {
     size_t n, n_blocks, n_times, size, columns; /* of a set for one time */
     block *blocks;
     size_t *index;
-    long double *a, *room; /* all a; three matrices of the largest block */
+    nevh__extended *a, *room; /* all a; three matrices of the largest block */
     int *units;
     double *times;
     set sets[SETS];
@@ -160,18 +160,18 @@ static void put_entry(void *data, size_t row, size_t column, double value) {
 static void choose_units(block *b) {
     size_t m = 2 * b->count;
     for (size_t k = 0; k < b->count; k++) {
-        long double drift = 0, kick = 0;
+        nevh__extended drift = 0, kick = 0;
         for (size_t j = 0; j < b->count; j++) {
-            drift = fmaxl(drift, fabsl(b->a[2 * k * (m + 1) + 2 * j + 1]));
-            kick = fmaxl(kick, fabsl(b->a[(2 * k + 1) * (m + 1) + 2 * j]));
+            drift = fmax(drift, fabs(b->a[2 * k * (m + 1) + 2 * j + 1]));
+            kick = fmax(kick, fabs(b->a[(2 * k + 1) * (m + 1) + 2 * j]));
         }
         bool both = drift > 0 && kick > 0;
-        b->units[2 * k + 1] = both ? ilogbl(kick / drift) / 2 : 0;
+        b->units[2 * k + 1] = both ? ilogb(kick / drift) / 2 : 0;
     }
     for (size_t i = 0; i < m; i++)
         for (size_t j = 0; j <= m; j++) {
-            long double *x = &b->a[i * (m + 1) + j];
-            *x = ldexpl(*x, (j < m ? b->units[j] : 0) - b->units[i]);
+            nevh__extended *x = &b->a[i * (m + 1) + j];
+            *x = ldexp(*x, (j < m ? b->units[j] : 0) - b->units[i]);
         }
 }
 
@@ -280,40 +280,40 @@ nevh__form_flow *nevh__form_flow_new(nevh_work *w, size_t count,
 }
 
 /* product = x y, all m x (m + 1), the row below being 0. */
-static void multiply(size_t m, const long double x[], const long double y[],
-                     long double product[]) {
+static void multiply(size_t m, const nevh__extended x[],
+                     const nevh__extended y[], nevh__extended product[]) {
     size_t row = m + 1;
     memset(product, 0, m * row * sizeof *product);
     for (size_t i = 0; i < m; i++)
         for (size_t k = 0; k < m; k++) {
-            long double factor = x[i * row + k];
+            nevh__extended factor = x[i * row + k];
             for (size_t j = 0; factor != 0 && j <= m; j++)
                 product[i * row + j] += factor * y[k * row + j];
         }
 }
 
-static long double norm(size_t m, const long double x[]) {
-    long double most = 0;
+static nevh__extended norm(size_t m, const nevh__extended x[]) {
+    nevh__extended most = 0;
     for (size_t i = 0; i < m; i++) {
-        long double sum = 0;
+        nevh__extended sum = 0;
         for (size_t j = 0; j < m; j++)
-            sum += fabsl(x[i * (m + 1) + j]);
-        most = fmaxl(most, sum);
+            sum += fabs(x[i * (m + 1) + j]);
+        most = fmax(most, sum);
     }
     return most;
 }
 
 /* exp(t a) - 1 to room; returns it. */
-static const long double *exponential(const block *b, double t,
-                                      long double *room) {
+static const nevh__extended *exponential(const block *b, double t,
+                                         nevh__extended *room) {
     size_t m = 2 * b->count, size = m * (m + 1);
-    long double *x = room, *sum = x + size, *product = sum + size;
+    nevh__extended *x = room, *sum = x + size, *product = sum + size;
     int halvings = 0;
-    long double length = norm(m, b->a) * fabsl(t);
+    nevh__extended length = norm(m, b->a) * fabs(t);
     for (; length > 0.5L && halvings < MOST_HALVINGS; halvings++)
         length /= 2;
     for (size_t i = 0; i < size; i++) {
-        x[i] = length <= 0.5L ? ldexpl(b->a[i] * t, -halvings) : NAN;
+        x[i] = length <= 0.5L ? ldexp(b->a[i] * t, -halvings) : NAN;
         sum[i] = x[i] / TERMS;
     }
     for (int k = TERMS - 1; k > 0; k--) {
@@ -330,21 +330,20 @@ static const long double *exponential(const block *b, double t,
 }
 
 /* The matrix to a set, without what is below the last digits of its row. */
-static void store(const block *b, const long double d[], double high[],
+static void store(const block *b, const nevh__extended d[], double high[],
                   double low[], size_t first[], size_t last[]) {
     size_t m = 2 * b->count;
     for (size_t j = 0; j <= m; j++)
         first[j] = last[j] = 0;
     for (size_t i = 0; i < m; i++) {
-        const long double *row = d + i * (m + 1);
-        long double most = 0;
+        const nevh__extended *row = d + i * (m + 1);
+        nevh__extended most = 0;
         for (size_t j = 0; j < m; j++)
-            most = fmaxl(most, fabsl(row[j]));
+            most = fmax(most, fabs(row[j]));
         for (size_t j = 0; j <= m; j++) {
-            bool counts =
-                j == m ? row[j] != 0 : fabsl(row[j]) > most * 0x1p-64L;
+            bool counts = j == m ? row[j] != 0 : fabs(row[j]) > most * 0x1p-64L;
             int unit = b->units[i] - (j < m ? b->units[j] : 0);
-            long double x = counts ? ldexpl(row[j], unit) : 0;
+            nevh__extended x = counts ? ldexp(row[j], unit) : 0;
             high[j * m + i] = (double)x;
             low[j * m + i] = (double)(x - (double)x);
             first[j] = counts && !last[j] ? i : first[j];
