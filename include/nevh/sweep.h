@@ -48,6 +48,7 @@ typedef struct {
     bool ordered;             /* results come in order of members */
     nevh_native_use native;   /* as in nevh_options */
     const char *native_cache; /* the same; borrowed while the sweep lives */
+    size_t substeps;          /* of nevh_respa; 0: the scene's */
 } nevh_sweep_options;
 
 /* A sweep over the members of a scene.  Member i is a function of the scene's

@@ -185,6 +185,7 @@ nevh_ensemble_options nevh__variant_options(const nevh_sweep *s,
     const nevh_scene_run *run = &m->run;
     bool planned = plan_state(x, room, room + m->n);
     bool own = s->is.gradient_step > 0;
+    size_t substeps = s->is.substeps ? s->is.substeps : run->substeps;
     *o = (nevh_options){.gradient = s->is.gradient,
                         .gradient_step =
                             own ? s->is.gradient_step : run->gradient_step,
@@ -195,7 +196,7 @@ nevh_ensemble_options nevh__variant_options(const nevh_sweep *s,
                         .tolerance = s->is.tolerance,
                         .transform = s->is.transformed ? m->transform : NULL,
                         .portable = s->is.portable,
-                        .substeps = run->substeps,
+                        .substeps = substeps,
                         .native = s->is.native,
                         .native_cache = s->is.native_cache};
     double t_end = s->is.t_end != 0 ? s->is.t_end : run->t_end;

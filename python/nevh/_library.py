@@ -129,7 +129,7 @@ class _SweepOptions(c.Structure):
                 ("t_end", c.c_double), ("tolerance", c.c_double),
                 ("portable", c.c_bool), ("width", c.c_size_t),
                 ("threads", c.c_size_t), ("ordered", c.c_bool), ("native", c.c_int),
-                ("native_cache", c.c_char_p)]
+                ("native_cache", c.c_char_p), ("substeps", c.c_size_t)]
 
 
 class _Records(c.Structure):
@@ -153,7 +153,7 @@ system_from:pzpp system_free:-p system_status:ip system_message:sp system_probe:
 system_traits:ip system_friction:bpp integrator_named:ps integrator_name:sp
 integrator_adaptive:bp integrator_own_time:bp integrator_needs:ip integrator_order:ip integrator_symplectic:ip integrators:p scene_integrator_named:pps integrator_facts:ipp
 scheme_shortfall:sppz energy_observe:ipzdpp
-integrator_needs_formulas:bp gradient_named:ps gradient_name:sp gradients:p
+integrator_needs_formulas:bp substeps_named:zs gradient_named:ps gradient_name:sp gradients:p
 stepper_new:pppp stepper_free:-p stepper_status:ip stepper_message:sp
 stepper_time:dp stepper_taken:zp stepper_counts:Cp stepper_order:ip run_at:ipdddpzpppppz run_until:ipdddpppz
 energy_new:ppp energy_free:-p energy_status:ip energy_message:sp energy_follow:ipp
@@ -283,12 +283,18 @@ def _integrator(name):
         name = name.__name__
     name, plus, rest = _text("method", name).partition("+")
     found = _lib.integrator_named(_scipy_names.get(name, name).encode())
-    if not found or (plus and rest != "transform"):
+    if not found or (plus and rest != "transform" and not _substeps(name + plus + rest)):
         raise Refused("there is no method %r%s; nevh.integrators() lists them, and of "
                       "SciPy's %s are known" % (
                           name + plus + rest, _closest(name, integrators()),
                           " and ".join(_scipy_names)))
-    return found, bool(plus)
+    return found, rest == "transform"
+
+
+def _substeps(name):
+    """Those of a name such as respa+16; of others 0, for those of the scene."""
+    name, _, count = name.partition("+") if isinstance(name, str) else ("", "", "")
+    return _lib.substeps_named(b"+" + count.encode()) if name == "respa" else 0
 
 
 def _gradient(name):

@@ -12,7 +12,7 @@ import threading
 import warnings
 
 from ._library import (_check, _gradient, _integrator, _JudgedRun, _lib, _observe_fn,
-                       _Observer, _Options, Refused, _STOPPED, verdicts)
+                       _Observer, _Options, Refused, _STOPPED, _substeps, verdicts)
 from ._arrays import _cut, np, _numbers, _positive, Result, _table
 from ._functions import _set_gradient_steps
 from ._progress import Progress
@@ -27,7 +27,10 @@ class _Plan:
         self._made_of = (subject, name, gradient, list(y[0]), t0, tolerance, gradient_step)
         integrator, transformed = _integrator(name)
         o = self.options = _Options(t=t0, q=y[1], p=y[1] + 8 * subject.n * width,
-                                    tolerance=tolerance, width=width, steps_foreseen=steps)
+                                    tolerance=tolerance, width=width, steps_foreseen=steps,
+                                    substeps=_substeps(name))
+        if subject.scene and not o.substeps:
+            o.substeps = subject.scene._settings().substeps
         if gradient is None:  # none is taken: nothing is to be planned
             o.gradient, gradient_step = _gradient("central2"), 1
         else:

@@ -13,7 +13,7 @@ import warnings
 from typing import Any, Mapping, Sequence
 
 from ._library import (_check, _gradient, _integrator, _lib, _Records, Refused,
-                       _SweepOptions)
+                       _substeps, _SweepOptions)
 from ._arrays import np, _positive, _real, _whole_from_one
 from ._scene import _assign, Scene, _scene, _starts
 from ._progress import Progress
@@ -84,6 +84,7 @@ def sweep(scene: str | os.PathLike | Scene, vary: Any = None,
         raise Refused("%s takes steps of dt and no tolerance: leave out rtol"
                       % (integrator or "verlet"))
     o = _SweepOptions(integrator=found, transformed=transformed,
+                      substeps=_substeps(integrator),
                       dt=0 if dt is None else _positive("dt", dt),
                       t_end=0 if t_end is None else _ends(settings, t_end),
                       threads=(os.cpu_count() or 1) if threads is None else

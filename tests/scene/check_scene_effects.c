@@ -11,11 +11,35 @@ static nevh_scene *scene_of(const char *text) {
     return s;
 }
 
-/* Deletes the lines of an effect from a scene's text. */
+/* Deletes the lines of an effect from a scene's text, and its name from the fast
+   ones. */
 
 static bool begins(const char *line, const char *word) {
     size_t bytes = strlen(word);
     return strncmp(line, word, bytes) == 0 && strchr(" =", line[bytes]);
+}
+
+static bool is_off(const char *name, size_t bytes, const char *const off[]) {
+    for (size_t i = 0; off[i]; i++)
+        if (strlen(off[i]) == bytes && strncmp(name, off[i], bytes) == 0)
+            return true;
+    return false;
+}
+
+/* "fast = NAME, NAME" without those that are off. */
+static char *write_fast(const char *line, const char *const off[], char *to) {
+    static const char key[] = "fast = ";
+    const char *name = line + strlen(key), *before = key;
+    while (*name != '\n') {
+        size_t bytes = strcspn(name, ",\n");
+        if (!is_off(name, bytes, off)) {
+            to += sprintf(to, "%s%.*s", before, (int)bytes, name);
+            before = ", ";
+        }
+        name += bytes;
+        name += strspn(name, ", ");
+    }
+    return to + sprintf(to, "\n");
 }
 
 static char *without_lines(const char *text, const char *const off[]) {
@@ -31,7 +55,9 @@ static char *without_lines(const char *text, const char *const off[]) {
         }
         for (size_t i = 0; off[i]; i++)
             drop |= effects && begins(line, off[i]);
-        if (!drop) {
+        if (strncmp(line, "fast = ", 7) == 0)
+            to = write_fast(line, off, to);
+        else if (!drop) {
             memcpy(to, line, (size_t)(next - line));
             to += next - line;
         }
