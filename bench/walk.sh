@@ -62,7 +62,7 @@ rm -rf "$root/nevh"
 git clone -q "$here" "$root/nevh"
 timed 0:0 /nevh 'apt-get update -qq'
 timed 0:0 /nevh ./quickstart
-timed 0:0 /nevh "$packages clang lld llvm wasi-libc libclang-rt-dev-wasm32"
+timed 0:0 /nevh "$packages clang lld llvm wasi-libc libclang-rt-dev-wasm32 zopfli binaryen"
 timed 0:0 /nevh '(cd build && ./config.status --recheck && ./config.status) && make -C build page'
 all 0:0 /nevh ./nevh
 timed 0:0 /nevh "$packages jupyter-nbconvert python3-ipykernel"
