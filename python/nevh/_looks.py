@@ -86,9 +86,9 @@ looks = (
     "aba864",
     "wisdom-holman",
     "saba2",
+    "respa",
     "saba3",
     "saba4",
     "aba84",
     "aba1064",
-    "respa",
 )

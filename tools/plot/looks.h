@@ -97,10 +97,10 @@
     X("aba864")                                                                \
     X("wisdom-holman")                                                         \
     X("saba2")                                                                 \
+    X("respa")                                                                 \
     X("saba3")                                                                 \
     X("saba4")                                                                 \
     X("aba84")                                                                 \
-    X("aba1064")                                                               \
-    X("respa")
+    X("aba1064")
 
 #endif
