@@ -43,7 +43,7 @@ static const char style[] =
     "th,td{padding:0 .3rem}"
     "tr,figure{break-inside:avoid}"
     "h2,h3,h2+p,h2+p+p{break-after:avoid}"
-    "p{orphans:3;widows:3}svg{max-height:6.5cm}"
+    "p{orphans:3;widows:3}svg{max-height:6.1cm}"
     "dd,pre,.wide{overflow:visible}"
     "button,input,nav,.film{display:none}}\n";
 
