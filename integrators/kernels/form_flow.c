@@ -310,10 +310,10 @@ static const nevh__extended *exponential(const block *b, double t,
     nevh__extended *x = room, *sum = x + size, *product = sum + size;
     int halvings = 0;
     nevh__extended length = norm(m, b->a) * fabs(t);
-    for (; length > 0.5L && halvings < MOST_HALVINGS; halvings++)
+    for (; length > 0.5 && halvings < MOST_HALVINGS; halvings++)
         length /= 2;
     for (size_t i = 0; i < size; i++) {
-        x[i] = length <= 0.5L ? ldexp(b->a[i] * t, -halvings) : NAN;
+        x[i] = length <= 0.5 ? ldexp(b->a[i] * t, -halvings) : NAN;
         sum[i] = x[i] / TERMS;
     }
     for (int k = TERMS - 1; k > 0; k--) {
@@ -341,7 +341,7 @@ static void store(const block *b, const nevh__extended d[], double high[],
         for (size_t j = 0; j < m; j++)
             most = fmax(most, fabs(row[j]));
         for (size_t j = 0; j <= m; j++) {
-            bool counts = j == m ? row[j] != 0 : fabs(row[j]) > most * 0x1p-64L;
+            bool counts = j == m ? row[j] != 0 : fabs(row[j]) > most * 0x1p-64;
             int unit = b->units[i] - (j < m ? b->units[j] : 0);
             nevh__extended x = counts ? ldexp(row[j], unit) : 0;
             high[j * m + i] = (double)x;

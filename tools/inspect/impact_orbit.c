@@ -89,14 +89,18 @@ trace trace_run(const plan *p, const char *integrator) {
     return o;
 }
 
-trace trace_dense(const plan *p, const char *integrator) {
-    enum { NUMBERS = 4000000, MOST = 40000 };
-    size_t most = NUMBERS / (2 * p->n);
-    trace o = new_trace(p, most < MOST ? most + 2 : MOST);
+trace trace_sampled(const plan *p, const char *integrator, size_t most) {
+    trace o = new_trace(p, most);
     nevh_stepper *s = plan_stepper(p, integrator);
     o.status = go(&o, s, &(nevh_observer){keep, &o, 1});
     nevh_stepper_free(s);
     return o;
+}
+
+trace trace_dense(const plan *p, const char *integrator) {
+    enum { NUMBERS = 4000000, MOST = 40000 };
+    size_t most = NUMBERS / (2 * p->n);
+    return trace_sampled(p, integrator, most < MOST ? most + 2 : MOST);
 }
 
 /* The larger of the ranges over both orbits; where a variable does not move,

@@ -23,7 +23,9 @@ typedef struct {
 
 /* Runs one orbit with the first dt and gradient; to be freed. */
 trace trace_run(const plan *, const char *integrator);
-/* With so many states that a curve looks like one, and without times. */
+/* The same without times, with at most so many states. */
+trace trace_sampled(const plan *, const char *integrator, size_t most);
+/* With so many that a curve looks like one. */
 trace trace_dense(const plan *, const char *integrator);
 void trace_free(trace *);
 difference trace_difference(const trace *, const trace *);

@@ -18,7 +18,7 @@ static const double hardly = 1e-6; /* of its size: no range to speak of */
 typedef struct {
     plan *plan;
     const char *integrator;
-    size_t count, kept, every, runs;
+    size_t count, kept, runs;
     char *effect[MOST];
     bool essential[MOST]; /* without it there is no such run */
     double *whole, *part; /* the observable, of all effects and of some */
@@ -26,39 +26,25 @@ typedef struct {
     double scale, alone[MOST], error;
 } search;
 
-typedef struct {
-    search *of;
-    double *to;
-    size_t kept;
-} watch;
-
-static int look(void *data, size_t step, double t, const double q[],
-                const double p[]) {
-    watch *w = data;
-    size_t i = step / w->of->every;
-    if (step % w->of->every || i > SAMPLES)
-        return 0;
-    w->kept = i + 1;
-    return nevh_scene_judged_value(w->of->plan->scene, t, q, p, &w->to[i]) ||
-           !isfinite(w->to[i]);
-}
-
 /* Returns whether the run with a set switched off has all its values. */
 static bool run_without(search *x, unsigned off, double to[]) {
     plan *p = x->plan;
-    watch w = {x, to, 0};
-    double stopped = NAN;
     bool fine = true;
     for (size_t i = 0; i < x->count && fine; i++)
         fine = impact_switch(p, x->effect[i], !(off >> i & 1));
-    nevh_stepper *s = fine ? plan_stepper(p, x->integrator) : NULL;
     x->runs++;
-    fine =
-        s && !nevh_stepper_status(s) &&
-        !plan_run(p, s, p->dt[0], &(nevh_observer){look, &w, 1}, 1, &stopped) &&
-        (!x->kept || w.kept == x->kept);
-    x->kept = fine ? w.kept : x->kept;
-    nevh_stepper_free(s);
+    if (!fine)
+        return false;
+    trace o = trace_sampled(p, x->integrator, SAMPLES);
+    fine = !o.status && o.kept > 0 && (!x->kept || o.kept == x->kept);
+    for (size_t i = 0; fine && i < o.kept; i++) {
+        const double *q = o.states + 2 * p->n * i;
+        double t = p->run->t_start + (double)(i * o.every) * p->dt[0];
+        fine = !nevh_scene_judged_value(p->scene, t, q, q + p->n, &to[i]) &&
+               isfinite(to[i]);
+    }
+    x->kept = fine ? o.kept : x->kept;
+    trace_free(&o);
     return fine;
 }
 
@@ -133,7 +119,7 @@ static int compare(const void *a, const void *b) {
 static unsigned choose(search *x) {
     unsigned sets = 1u << x->count, found = 0;
     candidate *all = tool_allocate(sets, sizeof *all);
-    double *change = tool_allocate(SAMPLES + 1, sizeof *change);
+    double *change = tool_allocate(SAMPLES, sizeof *change);
     double error = INFINITY;
     for (unsigned i = 0; i < sets; i++) {
         all[i] = (candidate){i, 0, predicted(x, i)};
@@ -184,7 +170,7 @@ static int find(const options *o, plan *p, search *x) {
         if (x->count == MOST)
             return tool_refuse("%s: more than %d effects are on", p->name,
                                MOST);
-        x->change[x->count] = tool_allocate(SAMPLES + 1, sizeof(double));
+        x->change[x->count] = tool_allocate(SAMPLES, sizeof(double));
         x->effect[x->count++] = text_print("%s", name);
     }
     if (!plan_fits(p, &x->integrator))
@@ -203,12 +189,10 @@ int needed(const options *o, plan *p) {
     if (!(o->search.error > 0))
         return tool_refuse("--needed FORMULA needs --error X, a part of its "
                            "range");
-    double steps = (p->t_end - p->run->t_start) / p->dt[0];
     page result = {.table = table_new()};
     search x = {.plan = p,
-                .every = (size_t)(steps / SAMPLES) + 1,
-                .whole = tool_allocate(SAMPLES + 1, sizeof(double)),
-                .part = tool_allocate(SAMPLES + 1, sizeof(double)),
+                .whole = tool_allocate(SAMPLES, sizeof(double)),
+                .part = tool_allocate(SAMPLES, sizeof(double)),
                 .error = o->search.error};
     int status = find(o, p, &x);
     if (!status) {
