@@ -225,4 +225,14 @@ exits 0 sweep pendulum --vary 'phi=1' --t-end 5 --quiet \
     --outcomes 'first(phi > 9),period' -o $work/never.npy
 test -s $work/err && fails "says that something is undefined"
 
+# Members take as many substeps as the name says, as a run does.
+for name in respa+2 respa+16; do
+    exits 0 run charged-chain --integrators $name --t-end 1 --samples 2 --quiet
+    tail -n 1 $work/out | cut -d, -f2 >$work/$name
+    exits 0 sweep charged-chain --vary c=1 --integrators $name --t-end 1 --quiet \
+        --outcomes 'last(x[1])'
+    tail -n 1 $work/out | cut -d, -f4 | cmp - $work/$name ||
+        fails "takes other substeps than $name"
+done
+cmp -s $work/respa+2 $work/respa+16 && fails "does not tell substeps apart"
 exit $status
