@@ -70,7 +70,7 @@ int nevh__field_terms(nevh_field *f, const nevh__places *at) {
     nevh__gradient_fn evaluate = f->gradient->evaluate;
     nevh__planned *term = f->terms, *end = term + f->n_terms;
     for (; !status && term < end; term++)
-        if (nevh__wanted(at, term))
+        if (nevh__wanted(f, at, term))
             status = evaluate(f, term, at);
     return status;
 }
@@ -255,32 +255,29 @@ int nevh__field_gradient_padded(nevh_field *f, size_t used,
     return nevh__field_terms(f, at);
 }
 
-/* Inner terms, or all; afterwards gradients are of those that kick again. */
-static int take_terms(nevh_field *f, bool inner, const nevh__places *at) {
-    nevh__planned *term = f->terms, *end = term + f->n_terms;
+/* Of the terms of some parts alone; afterwards gradients are of those that kick. */
+static int take_parts(nevh_field *f, unsigned parts, const nevh__places *at) {
     int status = nevh__field_ready(f);
-    for (; term < end; term++) {
-        term->apart = inner && term->part != NEVH__INNER;
-        if (inner && !term->apart)
-            f->inner += term->term->decl.count * at->width;
-    }
+    unsigned kept = f->parts;
+    f->parts = parts;
     if (!status)
         status = nevh__field_terms(f, at);
-    for (term = f->terms; term < end; term++)
-        term->apart = term->part != NEVH__KICK;
+    f->parts = kept;
     return status;
 }
 
 int nevh__field_inner_gradient(nevh_field *f, const nevh__places *at) {
-    return take_terms(f, true, at);
+    f->inner += f->n_inner * at->width;
+    return take_parts(f, 1u << NEVH__INNER, at);
 }
 
 int nevh__field_whole_gradient(nevh_field *f, size_t width, const double t[],
                                const double q[], const double p[],
                                double dh_dq[], double dh_dp[]) {
     const nevh__places at = {width, t, q, p, dh_dq, dh_dp};
-    return f->divided ? take_terms(f, false, &at)
-                      : nevh_field_gradient(f, width, t, q, p, dh_dq, dh_dp);
+    return f->parts != NEVH__ALL_PARTS
+               ? take_parts(f, NEVH__ALL_PARTS, &at)
+               : nevh_field_gradient(f, width, t, q, p, dh_dq, dh_dp);
 }
 
 int nevh_field_gradient(nevh_field *f, size_t width, const double t[],

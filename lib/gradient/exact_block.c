@@ -36,7 +36,7 @@ static bool exact_block_applicable(const nevh__evaluation *e) {
     for (size_t i = 0; i < f->n_terms; i++) {
         const nevh__planned *term = &f->terms[i];
         const nevh_term *decl = &term->term->decl;
-        if (!nevh__wanted(&e->at, term))
+        if (!nevh__wanted(f, &e->at, term))
             continue;
         if (!stands(term))
             return false; /* variables would have to be gathered */
@@ -111,7 +111,8 @@ static bool exact_block_plan(nevh__evaluation *e) {
     nevh_field *f = e->field;
     uint64_t there[2] = {0, 0}, all = exact_block_rows_of(e, 0, f->n);
     for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++)
-        if (nevh__wanted(&e->at, term) && !exact_block_add_part(e, term, there))
+        if (nevh__wanted(f, &e->at, term) &&
+            !exact_block_add_part(e, term, there))
             return false;
     return (!e->at.dh_dq || there[0] == all) &&
            (!e->at.dh_dp || there[1] == all);

@@ -16,7 +16,7 @@ static bool exact_point_applicable(const nevh__evaluation *e) {
     if (f->n > NEVH__MOST_POINT_ROWS)
         return false; /* rows are counted as bits, and calls are for few */
     for (size_t i = 0; i < f->n_terms; i++)
-        if (nevh__wanted(&e->at, &f->terms[i]) &&
+        if (nevh__wanted(f, &e->at, &f->terms[i]) &&
             !f->terms[i].term->decl.point_gradient)
             return false; /* it brings blocks alone */
     return true;
@@ -74,7 +74,7 @@ static bool exact_point_plan(nevh__evaluation *e) {
     uint64_t there[2] = {0, 0}, all = nevh__row_bits(0, f->n);
     for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++)
         for (size_t i = 0;
-             nevh__wanted(&e->at, term) && i < term->term->decl.count; i++)
+             nevh__wanted(f, &e->at, term) && i < term->term->decl.count; i++)
             if (!exact_point_add_part(e, term, i, there))
                 return false;
     return (!e->at.dh_dq || there[0] == all) &&

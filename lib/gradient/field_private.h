@@ -39,7 +39,6 @@ typedef struct {
     const nevh__term_entry *term;
     size_t nq, np, nv;    /* variables of an instance: coordinates, momenta */
     nevh__part_role part; /* KICK where H is not divided */
-    bool apart;           /* gradients are without it */
     double *delta;        /* count x nv; NULL without differences */
     nevh__step *steps;    /* nevh__step_rows x nv */
     size_t first_step;    /* steps of the terms before it */
@@ -103,8 +102,9 @@ struct nevh_field {
     /* The first term with a share in one half of the gradient, if it has all of it;
        else NULL. */
     const nevh__planned *whole_q, *whole_p;
-    bool divided;    /* there are terms of another part than KICK */
-    uint64_t inner;  /* instances that gradients of inner terms were of */
+    unsigned parts;  /* whose terms gradients are of: a bit each */
+    size_t n_inner;  /* instances of inner terms */
+    uint64_t inner;  /* those that gradients of inner terms were of */
     bool starved;    /* memory was out when an evaluation was planned */
     bool broadcasts; /* one state may as well be repeated over a vector */
     size_t lanes; /* that have constants of their own; 0: all have the same */
@@ -139,9 +139,10 @@ static inline size_t nevh__part_of(const nevh__places *at) {
     return at->dh_dq && at->dh_dp ? 2 : at->dh_dp ? 1 : 0;
 }
 /* True if a term has a part in what is requested. */
-static inline bool nevh__wanted(const nevh__places *at,
+static inline bool nevh__wanted(const nevh_field *f, const nevh__places *at,
                                 const nevh__planned *term) {
-    return !term->apart && ((at->dh_dq && term->nq) || (at->dh_dp && term->np));
+    return f->parts >> term->part & 1 &&
+           ((at->dh_dq && term->nq) || (at->dh_dp && term->np));
 }
 
 /* The lane whose constants a state has, of so many side by side. */

@@ -230,8 +230,10 @@ int nevh__field_forget(nevh_field *f, int status) {
 static void set_apart(nevh_field *f) {
     for (size_t i = 0; i < f->n_terms; i++)
         if (f->terms[i].part != NEVH__KICK) {
-            f->terms[i].apart = f->divided = true;
+            f->parts = 1u << NEVH__KICK;
             f->whole_q = f->whole_p = NULL;
+            if (f->terms[i].part == NEVH__INNER)
+                f->n_inner += f->terms[i].term->decl.count;
         }
 }
 
@@ -290,6 +292,7 @@ nevh_field *nevh__field_of(const nevh_system *s, const nevh_options *options,
     f->n = s->n;
     f->portable = o->portable;
     f->gradient = o->gradient ? o->gradient : nevh_central4;
+    f->parts = NEVH__ALL_PARTS;
     f->terms = nevh__array(s->n_terms, sizeof *f->terms);
     fenv_t own; /* as in nevh_stepper_new */
     feholdexcept(&own);

@@ -180,7 +180,7 @@ static bool stencil_plan_applicable(const nevh__evaluation *e) {
         return false; /* evaluations are for small systems */
     for (size_t i = 0; i < f->n_terms; i++) {
         const nevh__stencil *s = f->terms[i].stencil[nevh__part_of(&e->at)];
-        if (!nevh__wanted(&e->at, &f->terms[i]))
+        if (!nevh__wanted(f, &e->at, &f->terms[i]))
             continue;
         if (!s)
             return false; /* it is taken in blocks */
@@ -217,7 +217,7 @@ static bool stencil_plan_plan(nevh__evaluation *e) {
     e->clear_q = e->at.dh_dq && !f->whole_q;
     e->clear_p = e->at.dh_dp && !f->whole_p;
     for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++) {
-        if (nevh__wanted(&e->at, term) && !stencil_plan_add_part(e, term))
+        if (nevh__wanted(f, &e->at, term) && !stencil_plan_add_part(e, term))
             return false;
     }
     e->stencil = true;

@@ -22,6 +22,7 @@ typedef enum {
     NEVH__CENTRE,
     NEVH__INNER
 } nevh__part_role;
+enum { NEVH__ALL_PARTS = (1 << (NEVH__INNER + 1)) - 1 };
 
 /* Chooses the terms of A.
    substeps whether terms may be inner ones
