@@ -26,9 +26,13 @@ const nevh_integrator nevh__respa_entry = {
 };
 NEVH__PUBLISH(respa);
 
-size_t nevh_substeps_named(const char *text) {
-    size_t digits = text && *text == '+' ? strspn(text + 1, "0123456789") : 0;
-    return digits && digits < 6 && !text[1 + digits]
-               ? strtoul(text + 1, NULL, 10)
+size_t nevh_substeps_named(const char *name) {
+    static const char begins[] = "respa+";
+    size_t before = sizeof begins - 1;
+    if (!name || strncmp(name, begins, before) != 0)
+        return 0;
+    size_t digits = strspn(name + before, "0123456789");
+    return digits < 6 && !name[before + digits]
+               ? strtoul(name + before, NULL, 10)
                : 0;
 }

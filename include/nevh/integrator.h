@@ -61,8 +61,8 @@ NEVH_API extern const nevh_integrator *const nevh_aba1064;
    the rest of A is moved exactly.  B is evaluated once a step.  The step has to stay
    below half of the shortest period of A: near it, it resonates. */
 NEVH_API extern const nevh_integrator *const nevh_respa;
-/* The substeps of "+16", as in "respa+16"; 0: the text is none such, or NULL. */
-NEVH_API size_t nevh_substeps_named(const char *text);
+/* The substeps of "respa+16", 16; 0: the name is none such, or NULL. */
+NEVH_API size_t nevh_substeps_named(const char *name);
 /* Implicit, for any H: Gauss-Legendre, named by order (twice the stages). */
 NEVH_API extern const nevh_integrator *const nevh_midpoint;
 NEVH_API extern const nevh_integrator *const nevh_gauss4;

@@ -71,7 +71,7 @@ static bool check_integrator(nevh_scene *s, const nevh__piece *name) {
     const char *tail = strchr(name->text, '+');
     return (is_integrator(s, plain) &&
             (!tail || strcmp(tail, "+transform") == 0 ||
-             (strcmp(plain, "respa") == 0 && nevh_substeps_named(tail)))) ||
+             nevh_substeps_named(name->text))) ||
            nevh__scene_fail_integrator(s, name, plain);
 }
 

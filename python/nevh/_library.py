@@ -293,8 +293,7 @@ def _integrator(name):
 
 def _substeps(name):
     """Those of a name such as respa+16; of others 0, for those of the scene."""
-    name, _, count = name.partition("+") if isinstance(name, str) else ("", "", "")
-    return _lib.substeps_named(b"+" + count.encode()) if name == "respa" else 0
+    return _lib.substeps_named(name.encode()) if isinstance(name, str) else 0
 
 
 def _gradient(name):

@@ -212,9 +212,11 @@ TEST_EACH(refusals, 3) {
 }
 
 TEST(names) {
-    ck_assert_uint_eq(nevh_substeps_named("+16"), 16);
-    ck_assert_uint_eq(nevh_substeps_named("+transform"), 0);
-    ck_assert_uint_eq(nevh_substeps_named("+16x"), 0);
-    ck_assert_uint_eq(nevh_substeps_named("16"), 0);
+    ck_assert_uint_eq(nevh_substeps_named("respa+16"), 16);
+    ck_assert_uint_eq(nevh_substeps_named("respa+transform"), 0);
+    ck_assert_uint_eq(nevh_substeps_named("respa+16x"), 0);
+    ck_assert_uint_eq(nevh_substeps_named("gauss+16"), 0);
+    ck_assert_uint_eq(nevh_substeps_named("respa+"), 0);
+    ck_assert_uint_eq(nevh_substeps_named("respa"), 0);
     ck_assert_uint_eq(nevh_substeps_named(NULL), 0);
 }

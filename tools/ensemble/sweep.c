@@ -43,7 +43,7 @@ static int make_sweep(sweep_job *j) {
                              .native_cache = p->no_cache ? "" : NULL};
     is.integrator = plan_scheme(p, j->integrator, &is.transformed);
     is.transformed = plan_transform(p, j->integrator) != NULL;
-    is.substeps = nevh_substeps_named(strchr(j->integrator, '+'));
+    is.substeps = nevh_substeps_named(j->integrator);
     if (nevh_integrator_adaptive(is.integrator) && p->tolerances)
         is.tolerance = p->tolerance[0];
     j->sweep = nevh_sweep_new(p->scene, &is);

@@ -18,8 +18,7 @@ const nevh_integrator *plan_scheme(const plan *p, const char *name,
                                    bool *transformed) {
     const char *plus = strchr(name, '+');
     *transformed = plus && strcmp(plus, "+transform") == 0;
-    if (plus && !*transformed &&
-        (strncmp(name, "respa+", 6) != 0 || !nevh_substeps_named(plus)))
+    if (plus && !*transformed && !nevh_substeps_named(name))
         return NULL;
     char *own = text_print("%.*s", (int)strcspn(name, "+"), name);
     const nevh_integrator *scheme = nevh_scene_integrator_named(p->scene, own);

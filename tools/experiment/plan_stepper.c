@@ -55,8 +55,8 @@ nevh_options plan_scheme_options(const plan *p, const char *name,
     bool transformed;
     *scheme = plan_scheme(p, name, &transformed);
     o.transform = plan_transform(p, name);
-    if (nevh_substeps_named(strchr(name, '+')))
-        o.substeps = nevh_substeps_named(strchr(name, '+'));
+    if (nevh_substeps_named(name))
+        o.substeps = nevh_substeps_named(name);
     if (nevh_integrator_adaptive(*scheme) && p->tolerances)
         o.tolerance = p->tolerance[0];
     return o;
