@@ -255,7 +255,7 @@ int nevh__field_gradient_padded(nevh_field *f, size_t used,
     return nevh__field_terms(f, at);
 }
 
-/* Of the terms of some parts alone; afterwards gradients are of those that kick. */
+/* Takes the terms of some parts; afterwards gradients are of those that kick again. */
 static int take_parts(nevh_field *f, unsigned parts, const nevh__places *at) {
     int status = nevh__field_ready(f);
     unsigned kept = f->parts;
