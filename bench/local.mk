@@ -16,7 +16,7 @@ bench_native_LDADD = libnevh.la
 check_PROGRAMS += bench/counts
 bench_counts_LDADD = libnevh.la
 bench_counts_LDFLAGS = -static-libtool-libs
-EXTRA_DIST += bench/counts.sh bench/python.py bench/marks.py
+EXTRA_DIST += bench/counts.sh bench/python.py bench/marks.py bench/page.mjs
 CLEANFILES += bench/counts$(EXEEXT) bench/results-counts.csv
 
 bench-counts: bench/counts$(EXEEXT)

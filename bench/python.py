@@ -5,7 +5,7 @@
 The parts are listing, functions, pendulum, commands, sweep, members, schemes, wrong,
 wheel and types; all of them take some five minutes of a processor that does nothing
 else.  It needs NumPy and SciPy; wheel runs in the build tree, types needs mypy.  Times
-are of the processor, the least of ROUNDS (5) that are interleaved.  It ends with exit
+are of the processor, the least of ROUNDS (15) that are interleaved.  It ends with exit
 status 1 where a promise is not kept.
 
 SPDX-License-Identifier: GPL-3.0-or-later
@@ -31,7 +31,7 @@ from promises import row, work  # noqa: E402
 import nevh  # noqa: E402
 from hamiltonians import cases, np, scene_of_text  # noqa: E402
 
-ROUNDS = int(os.environ.get("ROUNDS", 5))
+ROUNDS = int(os.environ.get("ROUNDS", 15))
 
 
 def seconds(run):
@@ -339,7 +339,8 @@ def schemes():
 def wrong():
     """Calls that are wrong, of tests/python/wrong_calls.py."""
     done = subprocess.run([sys.executable, os.path.join(top, "tests/python/wrong_calls.py")],
-                          capture_output=True, text=True)
+                          capture_output=True, text=True,
+                          env={**os.environ, "PYTHONPATH": os.path.join(top, "python")})
     said = done.stdout.strip().splitlines()[-1:]
     row("wrong calls: exceptions that say so, crashes", "200, 0", "%s, status %d" % (
         said[0].split(",")[0] if said else "?", done.returncode), done.returncode == 0)

@@ -55,9 +55,13 @@ python/nevh_files: libnevh.la tools/nevh$(EXEEXT) python/stage.sh
 	  LIBS="$(QUADMATH_LIBS) $(LIBS)" STRIP="$(STRIP)" srcdir="$(srcdir)" \
 	  $(SHELL) $(srcdir)/python/stage.sh $@
 
-# nevh-VERSION-py3-none-PLATFORM.whl, in python/; without a network.
+# nevh-VERSION-py3-none-manylinux_GLIBC_MACHINE.whl, in python/; without a network.
 interpreter = $${PYTHON:-python3}
 wheel: python/nevh_files
+	@$(interpreter) -c 'import setuptools, wheel' 2>/dev/null || { \
+	  echo "make wheel: $(interpreter) has no setuptools or no wheel; do:" \
+	    "apt-get install python3-setuptools python3-wheel, then make wheel" \
+	    "PYTHON=/usr/bin/python3" >&2; exit 1; }
 	rm -rf python/wheel && $(MKDIR_P) python/wheel
 	cp -R python/nevh_files $(srcdir)/python/nevh \
 	  $(srcdir)/python/pyproject.toml $(srcdir)/python/setup.py python/wheel

@@ -3,7 +3,9 @@
 SPDX-License-Identifier: GPL-3.0-or-later
 """
 
+import glob
 import os
+import re
 import shutil
 import subprocess
 
@@ -19,7 +21,20 @@ class Wheel(bdist_wheel):
         self.root_is_pure = False
 
     def get_tag(self):
-        return "py3", "none", super().get_tag()[2]
+        platform = super().get_tag()[2]
+        glibc = newest_glibc()
+        if platform.startswith("linux_") and glibc:
+            platform = "manylinux_%d_%d_%s" % (*glibc, platform[len("linux_"):])
+        return "py3", "none", platform
+
+
+def newest_glibc():
+    """The newest version of glibc, (2, 36) for instance, whose symbols a file needs."""
+    needed = set()
+    for path in glob.glob("nevh_files/bin/*") + glob.glob("nevh_files/lib/*"):
+        with open(path, "rb") as file:
+            needed.update(re.findall(rb"\0GLIBC_(\d+)\.(\d+)", file.read()))
+    return max((tuple(map(int, version)) for version in needed), default=None)
 
 
 def stage():

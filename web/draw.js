@@ -338,7 +338,7 @@ function report(atOnce) {
   if (!atOnce && now() - listed < 100) return; // texts that nobody reads cost a layout
   listed = now();
   const body = at("states").tBodies[0];
-  const lines = S.schemes.length + S.exact;
+  const lines = list.filter((run) => !(run.width > 1)).length;
   while (body.rows.length > lines) body.deleteRow(-1);
   while (body.rows.length < lines) {
     const row = body.insertRow();

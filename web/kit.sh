@@ -37,10 +37,11 @@ cat <<'HEAD'
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>nevh</title>
-<style>
+</head>
+<body>
+<noscript><p>This page needs JavaScript, which runs the scene. The page of nevh report does not.</p></noscript>
+<main hidden>
 HEAD
-cat "$folder/page.css" || exit 1
-printf '</style>\n</head>\n<body>\n<main>\n'
 cat "$folder/page.html" || exit 1
 printf '</main>\n<script type="application/json" id="given">\n@SCENE@\n</script>\n'
 # put ID FILE: smaller by 5 %, where zopfli is.
@@ -55,7 +56,12 @@ short() {
     sed 's/^ *//; /^\/\//d' "$@"
 }
 short "$folder/engine.js" >"$module.text" && put engine "$module.text"
+# The style comes with the scripts, so that the page is not seen without it.
 scripts() {
+    printf 'document.head.append(document.createElement("style"));\n'
+    printf 'document.head.lastChild.textContent = `'
+    cat "$folder/page.css" || exit 1
+    printf '`;\ndocument.querySelector("main").hidden = false;\n'
     awk -f "$folder/looks.awk" "$folder/../tools/plot/looks.h"
     short "$folder/view.js" "$folder/page.js" "$folder/draw.js" \
         "$folder/section.js" "$folder/try.js" "$folder/controls.js"

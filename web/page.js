@@ -197,30 +197,37 @@ async function findLimit() {
 }
 
 // ---- runs ----
+// One after another, and no steps meanwhile.
 async function race() {
-  await quiet();
+  while (busy) await quiet();
+  busy = true;
+  await start().finally(() => { busy = false; });
+}
+// What is drawn stays that of the runs before until all of the new ones is known.
+async function start() {
   const one = { gradient: S.gradient, h: S.dt };
-  list = S.schemes.map((scheme) => ({ ...one, scheme, colour: nevhLook(scheme) }));
+  const runs = S.schemes.map((scheme) => ({ ...one, scheme, colour: nevhLook(scheme) }));
   if (S.exact)
-    list.push({ ...one, scheme: "taylor", tolerance: 1e-16, colour: -1 });
+    runs.push({ ...one, scheme: "taylor", tolerance: 1e-16, colour: -1 });
   if (S.disc)
-    S.schemes.forEach((scheme) => list.push({ ...one, scheme, colour: nevhLook(scheme),
+    S.schemes.forEach((scheme) => runs.push({ ...one, scheme, colour: nevhLook(scheme),
       width: 256, k: S.plane }));
-  const answer = await ask({ ask: "race", list, start: S.start });
+  const begin = () => ask({ ask: "race", list: runs, start: S.start });
+  const answer = await begin();
   if (!answer.ok) { at("message").textContent = answer.message; return; }
-  steps = 0;
-  due = 0;
   if (!pulling) {
-    const { ok, found, broken } = await ask({ ask: "ahead", list: list.filter((r) =>
+    const { ok, found, broken } = await ask({ ask: "ahead", list: runs.filter((r) =>
       !(r.width > 1)), steps: Math.ceil(SHOWN * seconds() / S.dt), start: S.start });
     ahead = ok ? found : [];
     if (broken) {
       await open(S.text, S.changes);
-      await ask({ ask: "race", list, start: S.start });
+      await begin();
     }
-    phaseBox = seen = levels = errorBox = null;
     await findExtent();
+    phaseBox = seen = levels = errorBox = null;
   }
+  list = runs;
+  steps = due = 0;
   profile = 1e-9;
   histories = list.map(() => new NevhHistory());
   trails = list.map(() => []);
@@ -293,6 +300,7 @@ async function quiet() {
 
 // ---- the clock: elapsed time says only how many steps are due ----
 function frame(time) {
+  requestAnimationFrame(frame); // the next one comes whatever fails in this one
   const passed = Math.min(100, time - last) / 1000;
   last = time;
   if (playing && !held && scene) {
@@ -310,7 +318,6 @@ function frame(time) {
     draw();
   }
   frames++;
-  requestAnimationFrame(frame);
 }
 let frames = 0;
 

@@ -21,6 +21,5 @@ nevhUnpack("scripts").text().then((text) => {
   script.textContent = text;
   document.body.append(script);
 }).catch((error) => {
-  document.getElementById("message").textContent =
-    "This browser cannot unpack the page: " + error.message;
+  document.body.textContent = "This browser cannot unpack the page: " + error.message;
 });

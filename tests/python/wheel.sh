@@ -24,7 +24,7 @@ PYTHON=$python "${MAKE:-make}" wheel >"$work/log" 2>&1 ||
     { cat "$work/log"; exit 1; }
 wheel=$(tail -n 1 "$work/log")
 case $wheel in
-nevh-"$version"-py3-none-*.whl) ;;
+nevh-"$version"-py3-none-manylinux_2_*.whl) ;;
 *) echo "the wheel is called $wheel"; exit 1 ;;
 esac
 # A wheel is an archive; pip would put its files in the same places.

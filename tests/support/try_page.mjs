@@ -69,6 +69,22 @@ await tried("both", "", async (page) => {
     "the address forgets the scene");
 });
 
+// Schemes may be added while it moves, several in a moment.
+await tried("pendulum", "integrators=verlet", async (page) => {
+  check(await page.until("steps > 5"), "one scheme does not move");
+  const add = `(() => { const menu = [...document.querySelectorAll("#schemes select")].at(-1);
+    menu.value = [...menu.options].map((o) => o.value)
+      .find((name) => name && !S.schemes.includes(name));
+    menu.dispatchEvent(new Event("change")); })()`;
+  await page.evaluate(add + "; " + add);
+  await page.until("list.length === 2 && steps > 1");
+  await page.evaluate(add);
+  check(await page.until("list.length === 4 && steps > 5", 20),
+    "four schemes do not move: " + await page.evaluate("list.length + ', ' + steps"));
+  check(await page.evaluate("histories.length === 4 && rows.every((r) => r[0] > 0)"),
+    "a scheme that was added stands");
+});
+
 // It moves, alone, and stops and goes by keys; formulas are changed, and wrong
 // ones are refused with the place.
 await tried("pendulum", "", async (page) => {
