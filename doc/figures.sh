@@ -34,6 +34,7 @@ quote compare-pendulum "$nevh" compare pendulum
     --plot "$srcdir/doc/energy.svg" >/dev/null
 quote cost-pendulum "$nevh" cost pendulum --t-end 100 \
     --integrators verlet,blanes-moan4,gauss4,gauss8,rk4
+quote cost-length-pendulum "$nevh" cost pendulum --against length --t-end 500
 quote recommend-pendulum "$nevh" recommend pendulum --energy-error 1e-8 --t-end 100
 quote gradients-pendulum "$nevh" gradients pendulum --t-end 100
 

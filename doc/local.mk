@@ -3,6 +3,7 @@ info_TEXINFOS = doc/nevh.texi
 doc_nevh_TEXINFOS = \
 	doc/compare-pendulum.txt \
 	doc/cost-pendulum.txt \
+	doc/cost-length-pendulum.txt \
 	doc/recommend-pendulum.txt \
 	doc/gradients-pendulum.txt \
 	doc/hard.txt \

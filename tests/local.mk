@@ -262,6 +262,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_hard.sh \
 	tests/tool/nevh_exit.sh \
 	tests/tool/nevh_cost.sh \
+	tests/tool/nevh_cost_length.sh \
 	tests/python/python.sh \
 	tests/python/notebook.sh \
 	tests/python/wheel.sh \

@@ -41,6 +41,7 @@ tools_nevh_SOURCES = \
 	tools/search/cost_private.h \
 	tools/search/cost.c \
 	tools/search/cost_table.c \
+	tools/search/cost_length.c \
 	tools/search/cost_price.c \
 	tools/search/cost_words.c \
 	tools/search/recommend_private.h \

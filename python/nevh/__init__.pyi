@@ -115,14 +115,15 @@ def cost(scene: Any, integrators: str | Sequence[str] | None = None, dt: float |
         Sequence[str] | None = None, parameters: Mapping[str, Any] | None = None, y0:
         Mapping[str, float | str] | Sequence[float] | None = None, gradient: str |
         Sequence[str] | None = None, gradient_step: float | None = None, by:
-        Literal["energy", "state"] | None = None, observable: float | str | None = None,
-        repeat: int | None = None, budget: float | None = None, portable: bool | None =
-        None, native: Literal["auto", "always", "never"] | None = None, no_cache: bool |
-        None = None, plot: str | PathLike[str] | None = None, plot_narrow: bool | None =
-        None, plot_kind: Literal["phase", "time", "energy", "configuration", "animation",
-        "order"] | None = None, keep_plot_script: str | PathLike[str] | None = None,
-        allow_code: bool | None = None, coordinates: Sequence[str] | None = None, options:
-        Sequence[str] = ()) -> Table: ...
+        Literal["energy", "state"] | None = None, against: Literal["work", "length"] |
+        None = None, observable: float | str | None = None, repeat: int | None = None,
+        budget: float | None = None, portable: bool | None = None, native: Literal["auto",
+        "always", "never"] | None = None, no_cache: bool | None = None, plot: str |
+        PathLike[str] | None = None, plot_narrow: bool | None = None, plot_kind:
+        Literal["phase", "time", "energy", "configuration", "animation", "order"] | None =
+        None, keep_plot_script: str | PathLike[str] | None = None, allow_code: bool | None
+        = None, coordinates: Sequence[str] | None = None, options: Sequence[str] =
+        ()) -> Table: ...
 def effects(scene: Any, integrators: str | Sequence[str] | None = None, dt: float | str |
         Sequence[float | str] | None = None, t_end: float | str | None = None, *,
         with_effects: str | Sequence[str] | None = None, without_effects: str |

@@ -56,6 +56,10 @@ const option_row option_rows[] = {
     {"by", "energy|state", CHOICE(unsigned, search.by), NULL,
      "count digits of the energy (default) or of the orbit",
      .words = "energy|state"},
+    {"against", "work|length", CHOICE(unsigned, search.against), NULL,
+     "length: digits of the scene's integrators at equal work against the length "
+     "of the run; of the orbit, unless --by energy",
+     .words = "work|length"},
     {"energy-error", "X", NUMBER(search.energy_error), NULL,
      "largest relative energy error allowed"},
     {"state-error", "X", NUMBER(search.state_error), NULL,

@@ -236,7 +236,7 @@ typedef struct {
         double energy_error, state_error, error;
         double budget; /* seconds; of chaos, too; 0: not given */
         size_t repeats;
-        unsigned by; /* 1: the state */
+        unsigned by, against; /* 1: the state; the length */
     } search;
     struct { /* of fit; data: a file of measured points */
         const char *data;

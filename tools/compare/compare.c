@@ -213,7 +213,7 @@ static page make_page(const options *o, const plan *p, const row_list *r) {
 
 static int draw_rows(const options *o, const plan *p, const row_list *r) {
     return o->plot.kind == PLOT_KIND_order
-               ? order_plot(o, p, r->row, r->count)
+               ? order_plot(o, p, r->row, r->count, ORDER_DT)
                : compare_plot(o, p, r->row, r->count);
 }
 

@@ -1,4 +1,5 @@
-/* nevh compare and cost --plot-kind order: errors against the step, with slopes.
+/* nevh compare and cost --plot-kind order: errors against the step, with slopes; cost
+   --against length: against the length of the run.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "order_plot.h"
 #include <math.h>
@@ -28,11 +29,17 @@ static const struct {
                     {state_error, "largest state error, relative"},
                     {observable_error, "largest error of the observable"}};
 
-/* The points of one scheme, by rising dt. */
+/* The points of one scheme, by rising x: dt, or the end of the run. */
 typedef struct {
     size_t count, from, to; /* from, to: of the slope */
-    double *dt, *error, slope;
+    double *x, *error, slope;
 } curve;
+
+typedef struct {
+    const row *row;
+    size_t count;
+    order_axis axis;
+} rows_drawn;
 
 void order_plot_steps(const options *o, plan *p) {
     static const double steps = 200; /* of the longest */
@@ -116,26 +123,26 @@ static bool is_first(const row rows[], size_t i) {
     return true;
 }
 
-static void insert(curve *c, double dt, double error) {
+static void insert(curve *c, double x, double error) {
     size_t i = c->count++;
-    for (; i > 0 && c->dt[i - 1] > dt; i--) {
-        c->dt[i] = c->dt[i - 1];
+    for (; i > 0 && c->x[i - 1] > x; i--) {
+        c->x[i] = c->x[i - 1];
         c->error[i] = c->error[i - 1];
     }
-    c->dt[i] = dt;
+    c->x[i] = x;
     c->error[i] = error;
 }
 
-static curve curve_of(const row rows[], size_t count, size_t first,
-                      error_of *error) {
-    curve c = {.dt = tool_allocate(count, sizeof *c.dt),
-               .error = tool_allocate(count, sizeof *c.error)};
+static curve curve_of(const rows_drawn *d, size_t first, error_of *error) {
+    bool steps = d->axis == ORDER_DT;
+    curve c = {.x = tool_allocate(d->count, sizeof *c.x),
+               .error = tool_allocate(d->count, sizeof *c.error)};
     size_t above = 0, below; /* those that rounding makes; saturated ones */
-    for (size_t i = first; i < count; i++) {
-        const row *r = &rows[i];
-        double value = r->ran && r->tolerance == 0 ? error(r) : NAN;
-        if (is_same(r, &rows[first]) && value > 0 && value < useless)
-            insert(&c, r->dt, value);
+    for (size_t i = first; i < d->count; i++) {
+        const row *r = &d->row[i];
+        double value = r->ran && (r->tolerance == 0 || !steps) ? error(r) : NAN;
+        if (is_same(r, &d->row[first]) && value > 0 && value < useless)
+            insert(&c, steps ? r->dt : r->t_end, value);
     }
     while (above < c.count && !(c.error[above] > rounding))
         above++;
@@ -143,7 +150,7 @@ static curve curve_of(const row rows[], size_t count, size_t first,
         below--;
     c.slope = c.count < ORDER_STEPS
                   ? NAN
-                  : order_slope(c.dt + above, c.error + above, below - above,
+                  : order_slope(c.x + above, c.error + above, below - above,
                                 &c.from, &c.to);
     c.from += above;
     c.to += above;
@@ -151,18 +158,18 @@ static curve curve_of(const row rows[], size_t count, size_t first,
 }
 
 static void free_curve(curve *c) {
-    free(c->dt);
+    free(c->x);
     free(c->error);
 }
 
 /* The kinds of errors that some scheme has at two steps. */
-static size_t find_kinds(const row rows[], size_t count, size_t kinds[]) {
+static size_t find_kinds(const rows_drawn *d, size_t kinds[]) {
     size_t found = 0;
     for (size_t k = 0; k < ERRORS; k++) {
         bool drawn = false;
-        for (size_t i = 0; i < count && !drawn; i++) {
-            curve c = curve_of(rows, count, i, errors[k].of);
-            drawn = is_first(rows, i) && c.count > 1;
+        for (size_t i = 0; i < d->count && !drawn; i++) {
+            curve c = curve_of(d, i, errors[k].of);
+            drawn = is_first(d->row, i) && c.count > 1;
             free_curve(&c);
         }
         if (drawn)
@@ -196,7 +203,7 @@ static char *name_of(const plan *p, const row *r, const curve curves[],
 static void draw_points(plot *to, size_t series, const curve *c, size_t from,
                         size_t end) {
     for (size_t i = from; i < end; i++)
-        plot_point(to, series, c->dt[i], c->error[i]);
+        plot_point(to, series, c->x[i], c->error[i]);
 }
 
 static void draw_curve(plot *to, const char *name, const char *integrator,
@@ -212,30 +219,30 @@ static void draw_curve(plot *to, const char *name, const char *integrator,
     draw_points(to, series, c, 0, c->count);
 }
 
-static void draw_panel(plot *to, const plan *p, const row rows[], size_t count,
+static void draw_panel(plot *to, const plan *p, const rows_drawn *d,
                        const size_t kinds[], size_t panels, size_t panel) {
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < d->count; i++) {
         curve curves[ERRORS];
-        if (!is_first(rows, i))
+        if (!is_first(d->row, i))
             continue;
         for (size_t k = 0; k < panels; k++)
-            curves[k] = curve_of(rows, count, i, errors[kinds[k]].of);
-        char *name = name_of(p, &rows[i], curves, panels);
-        draw_curve(to, name, rows[i].integrator, &curves[panel]);
+            curves[k] = curve_of(d, i, errors[kinds[k]].of);
+        char *name = name_of(p, &d->row[i], curves, panels);
+        draw_curve(to, name, d->row[i].integrator, &curves[panel]);
         free(name);
         for (size_t k = 0; k < panels; k++)
             free_curve(&curves[k]);
     }
 }
 
-static void add_note(plot *to, const plan *p, const row rows[], size_t count) {
+static void add_note(plot *to, const plan *p, const rows_drawn *d) {
     bool adaptive = false, some = false;
-    for (size_t i = 0; i < count; i++)
-        adaptive |= rows[i].tolerance > 0;
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < d->count; i++)
+        adaptive |= d->row[i].tolerance > 0 && d->axis == ORDER_DT;
+    for (size_t i = 0; i < d->count; i++) {
         size_t steps = 0;
-        for (size_t k = 0; k < count; k++)
-            steps += is_same(&rows[i], &rows[k]);
+        for (size_t k = 0; k < d->count; k++)
+            steps += is_same(&d->row[i], &d->row[k]);
         some |= steps >= ORDER_STEPS;
     }
     char *text = text_print(
@@ -247,25 +254,26 @@ static void add_note(plot *to, const plan *p, const row rows[], size_t count) {
     free(text);
 }
 
-int order_plot(const options *o, const plan *p, const row rows[],
-               size_t count) {
-    size_t kinds[ERRORS], panels = find_kinds(rows, count, kinds);
+int order_plot(const options *o, const plan *p, const row rows[], size_t count,
+               order_axis axis) {
+    rows_drawn d = {rows, count, axis};
+    size_t kinds[ERRORS], panels = find_kinds(&d, kinds);
     plot *to = NULL;
     if (panels == 0)
         return tool_refuse("there is nothing to plot: no scheme has errors "
-                           "between 0 and %g at two steps",
-                           useless);
-    char *x = plot_label(p, "dt", "t");
+                           "between 0 and %g at two %s",
+                           useless, axis == ORDER_DT ? "steps" : "lengths");
+    char *x = plot_label(p, axis == ORDER_DT ? "dt" : "end of the run", "t");
     for (size_t k = 0; k < panels; k++) {
         if (to)
             plot_panel(to, NULL, x, errors[kinds[k]].label);
         else
             to = plot_new(p->title, x, errors[kinds[k]].label);
         plot_log(to, true, true);
-        draw_panel(to, p, rows, count, kinds, panels, k);
+        draw_panel(to, p, &d, kinds, panels, k);
     }
     free(x);
-    add_note(to, p, rows, count);
+    add_note(to, p, &d);
     int status = plot_write(to, o);
     plot_free(to);
     return status;

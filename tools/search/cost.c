@@ -265,7 +265,7 @@ static int draw_costs(const options *o, const costs *c) {
     if (o->plot.kind != PLOT_KIND_order)
         return cost_plot(o, c);
     row *rows = list_rows(c, true, &count);
-    int status = order_plot(o, &c->search.plan, rows, count);
+    int status = order_plot(o, &c->search.plan, rows, count, ORDER_DT);
     free(rows);
     return status;
 }
@@ -304,6 +304,8 @@ static int cost_plan(const options *o, plan *p, double whole) {
 static int cost(const options *o) {
     plan p;
     double whole = NAN;
+    if (o->search.against)
+        return cost_lengths(o);
     int status = plan_make(&p, o);
     if (!status)
         status = plan_search(&p, o);
@@ -328,9 +330,10 @@ const command cost_command = {
     .help = "what each digit costs, for each integrator",
     .examples =
         "cost oscillator --t-end 20\n"
-        "cost pendulum --t-end 20 --integrators verlet,gauss6,rk4 --by state --plot cost.svg",
+        "cost pendulum --t-end 20 --integrators verlet,gauss6,rk4 --by state --plot cost.svg\n"
+        "cost pendulum --against length --t-end 400",
     .options =
-        "SCENE STEPS NATIVE TABLE PLOT by observable repeat budget plot-kind",
+        "SCENE STEPS NATIVE TABLE PLOT by against observable repeat budget plot-kind",
     .draws = "order",
     .columns = RECORD_COLUMNS,
     .run = cost,

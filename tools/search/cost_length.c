@@ -1,0 +1,262 @@
+/* nevh cost --against length: the digits that schemes of equal work keep, against the
+   length of the run.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cost_private.h"
+#include "plot/order_plot.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LENGTHS = 5, FACTOR = 4 }; /* each so much longer */
+static const double useless = 0.1,
+                    rounding = 1e-13; /* errors that tell no rate */
+
+typedef struct {
+    plan plan;
+    row *row; /* LENGTHS of each scheme, the shortest first */
+    size_t schemes;
+    double end[LENGTHS];
+} lengths;
+
+static const row *row_at(const lengths *l, size_t scheme, size_t k) {
+    return &l->row[scheme * LENGTHS + k];
+}
+
+static double error_at(const lengths *l, size_t scheme, size_t k) {
+    return study_error(row_at(l, scheme, k));
+}
+
+/* The power of the length that the error grows with, by the two longest runs; NAN
+   where their errors are of rounding, or as large as the motion. */
+static double growth(const lengths *l, size_t scheme) {
+    double before = error_at(l, scheme, LENGTHS - 2);
+    double last = error_at(l, scheme, LENGTHS - 1);
+    return fmin(before, last) > rounding && fmax(before, last) < useless
+               ? log(last / before) / log(FACTOR)
+               : NAN;
+}
+
+/* A reference as long as the run: one that is longer has few states early on. */
+static int change_length(plan *p, double end) {
+    nevh_reference_free(p->reference);
+    free(p->no_reference);
+    p->reference = NULL;
+    p->no_reference = NULL;
+    p->t_end = end;
+    return plan_reference(p, end);
+}
+
+/* Runs to each end with one step, which costs as much as verlet's. */
+static int run_lengths(lengths *l, const options *o) {
+    row_list first = rows_of(&l->plan);
+    int status = TOOL_OK;
+    l->schemes = first.count;
+    l->row = tool_allocate(first.count * LENGTHS, sizeof *l->row);
+    search s = search_begin(&l->plan, o, SEARCH_BUDGET);
+    for (size_t i = 0; i < first.count; i++)
+        match_row(&l->plan, &first.row[i]);
+    for (size_t k = 0; k < LENGTHS && !status; k++) {
+        status = change_length(&l->plan, l->end[k]);
+        for (size_t i = 0; i < first.count && !status; i++) {
+            row *r = &l->row[i * LENGTHS + k];
+            *r = first.row[i];
+            search_progress(&s, r);
+            row_run(&l->plan, r);
+            if (r->ran && k == LENGTHS - 1)
+                rows_time(&l->plan, &r, 1, ROUNDS, false);
+        }
+    }
+    search_end(&s);
+    rows_free(&first);
+    return status;
+}
+
+static size_t best_at(const lengths *l, size_t k) {
+    size_t best = 0;
+    for (size_t i = 1; i < l->schemes; i++)
+        if (error_at(l, i, k) < error_at(l, best, k))
+            best = i;
+    return best;
+}
+
+static char *digits_text(const lengths *l, size_t scheme, size_t k) {
+    const row *r = row_at(l, scheme, k);
+    double error = error_at(l, scheme, k);
+    return !r->ran ? text_print("  %s", r->failed ? "fails" : "refused")
+           : isinf(error)
+               ? text_print("  -")
+               : text_print("%s %.1f", best_at(l, k) == scheme ? "*" : " ",
+                            fmax(0, -log10(error)));
+}
+
+static table *table_of(const lengths *l) {
+    table *t = table_new();
+    table_titles(t, "integrator,dt");
+    for (size_t k = 0; k < LENGTHS; k++) {
+        char *title = text_print("  t = %.3g", l->end[k]);
+        table_column(t, title);
+        free(title);
+    }
+    table_titles(t, "error\ngrows as,ms");
+    for (size_t i = 0; i < l->schemes; i++) {
+        const row *longest = row_at(l, i, LENGTHS - 1);
+        table_text(t, longest->integrator);
+        table_shown(t, "%.4g", longest->dt);
+        for (size_t k = 0; k < LENGTHS; k++) {
+            char *text = digits_text(l, i, k);
+            table_text(t, text);
+            free(text);
+        }
+        if (isnan(growth(l, i)))
+            table_text(t, "-");
+        else
+            table_shown(t, "t^%.1f", growth(l, i));
+        if (longest->ran)
+            table_shown(t, "%.3g", 1000 * longest->seconds);
+        else
+            table_text(t, "-");
+    }
+    return t;
+}
+
+static table *records_of(const lengths *l) {
+    table *t = table_new();
+    table_titles(t,
+                 "scene,integrator,gradient,dt,t_end,status,max_energy_error,"
+                 "state_error,error_exponent,gradient_evals,seconds");
+    for (size_t i = 0; i < l->schemes * LENGTHS; i++) {
+        const row *r = &l->row[i];
+        bool last = i % LENGTHS == LENGTHS - 1;
+        table_text(t, l->plan.name);
+        table_text(t, r->integrator);
+        table_text(t, r->gradient);
+        table_number(t, r->dt);
+        table_number(t, l->end[i % LENGTHS]);
+        table_text(t, r->status);
+        table_number(t, r->ran ? r->energy.max : NAN);
+        table_number(t, r->ran ? r->state_error : NAN);
+        table_number(t, last ? growth(l, i / LENGTHS) : NAN);
+        table_number(t, r->ran ? (double)r->counts.gradients : NAN);
+        table_number(t, last && r->ran ? r->seconds : NAN);
+    }
+    return t;
+}
+
+/* The length from which `to` errs less than `from`, which errs less before that:
+   between two runs, on a line through logarithms, or beyond the longest at the
+   rates of both; NAN: none. */
+static double crossing(const lengths *l, size_t from, size_t to) {
+    enum { FARTHEST = 1000 }; /* lengths of the run */
+    for (size_t k = 1; k < LENGTHS; k++) {
+        double a = log(error_at(l, from, k - 1) / error_at(l, to, k - 1));
+        double b = log(error_at(l, from, k) / error_at(l, to, k));
+        if (a < 0 && b > 0)
+            return l->end[k - 1] * pow(l->end[k] / l->end[k - 1], a / (a - b));
+    }
+    double gap =
+        log(error_at(l, to, LENGTHS - 1) / error_at(l, from, LENGTHS - 1));
+    double factor = exp(gap / (growth(l, from) - growth(l, to)));
+    double then = error_at(l, to, LENGTHS - 1) * pow(factor, growth(l, to));
+    return gap > 0 && growth(l, from) > growth(l, to) + 0.5 &&
+                   factor < FARTHEST && then < useless
+               ? l->end[LENGTHS - 1] * factor
+               : NAN;
+}
+
+static bool is_symplectic(const lengths *l, size_t scheme) {
+    return nevh_integrator_symplectic(row_at(l, scheme, 0)->scheme) == NEVH_YES;
+}
+
+static void crossing_word(const lengths *l, size_t from, size_t to,
+                          list *words) {
+    double t = crossing(l, from, to);
+    char *rounded = text_print("%.2g", t);
+    if (isfinite(t))
+        list_print(
+            words, "%s errs less than %s up to t = %g%s, and more from then on",
+            row_at(l, from, 0)->integrator, row_at(l, to, 0)->integrator,
+            strtod(rounded, NULL),
+            t > l->end[LENGTHS - 1] ? ", if both go on growing so (no run "
+                                      "is as long)"
+                                    : "");
+    free(rounded);
+}
+
+/* Where one of the two is symplectic. */
+static void crossing_words(const lengths *l, list *words) {
+    for (size_t i = 0; i < l->schemes; i++)
+        for (size_t j = 0; j < l->schemes; j++)
+            if (is_symplectic(l, i) != is_symplectic(l, j))
+                crossing_word(l, i, j, words);
+}
+
+static page page_of(const lengths *l, const options *o) {
+    page result = {.table =
+                       o->format == FORMAT_TABLE ? table_of(l) : records_of(l)};
+    plan_notes(&l->plan, &result.before);
+    list_print(&result.before, "%s",
+               l->plan.by_state
+                   ? "digits: -log10 of the largest error of the orbit"
+                   : "digits: -log10 of the largest energy error");
+    row_notes(o, &l->plan, l->row, l->schemes * LENGTHS, &result.before);
+    state_notes(&l->plan, &result.before);
+    crossing_words(l, &result.after);
+    return result;
+}
+
+static int print_lengths(lengths *l, const options *o) {
+    output out;
+    if (plot_check(o) || output_open(&out, o->file))
+        return TOOL_USAGE;
+    int status = run_lengths(l, o);
+    size_t count = status ? 0 : l->schemes * LENGTHS;
+    if (!status) {
+        page result = page_of(l, o);
+        page_print(&result, o, out.stream);
+        page_free(&result);
+    }
+    for (size_t i = 0; i < count; i++)
+        if (l->row[i].failed && status != TOOL_FAILED)
+            status = row_fails(&l->plan, &l->row[i]);
+    status = output_close(&out, status);
+    if (count && plot_wanted(o) &&
+        order_plot(o, &l->plan, l->row, count, ORDER_LENGTH))
+        status = TOOL_USAGE;
+    return status;
+}
+
+/* Takes one step, a fraction of the scene's, so that digits are left at the end. */
+static void choose_step(plan *p, const options *o) {
+    static const double finer = 16;
+    p->dts = 1;
+    if (o->dt.count)
+        return;
+    double dt = p->dt[0] / finer;
+    free(p->given_dt);
+    p->given_dt = tool_allocate(1, sizeof dt);
+    p->given_dt[0] = dt;
+    p->dt = p->given_dt;
+}
+
+int cost_lengths(const options *o) {
+    lengths l = {0};
+    plan *p = &l.plan;
+    int status = plan_make(p, o);
+    if (!status) {
+        p->match_work = true;
+        p->by_state = !option_given(o, "by") || o->search.by;
+        choose_step(p, o);
+        if (!o->t_end)
+            plan_shorten(p, SEARCH_BUDGET);
+        double begin = p->run->t_start, span = p->t_end - begin;
+        for (int k = 0; k < LENGTHS; k++)
+            l.end[k] = begin + span / pow(FACTOR, LENGTHS - 1 - k);
+        status = p->by_state ? plan_require_reference(p) : TOOL_OK;
+    }
+    if (!status)
+        status = print_lengths(&l, o);
+    row_list rows = {l.row, l.schemes * LENGTHS};
+    rows_free(&rows);
+    plan_free(p);
+    return status;
+}
