@@ -142,25 +142,42 @@ static table *records_of(const lengths *l) {
     return t;
 }
 
-/* The length from which `to` errs less than `from`, which errs less before that:
-   between two runs, on a line through logarithms, or beyond the longest at the
-   rates of both; NAN: none. */
-static double crossing(const lengths *l, size_t from, size_t to) {
-    enum { FARTHEST = 1000 }; /* lengths of the run */
+/* Between two runs, on lines through logarithms, the first length at which `to` comes
+   to err less than `from`; NAN: none. */
+static double crossing_within(const lengths *l, size_t from, size_t to,
+                              double *error) {
     for (size_t k = 1; k < LENGTHS; k++) {
-        double a = log(error_at(l, from, k - 1) / error_at(l, to, k - 1));
-        double b = log(error_at(l, from, k) / error_at(l, to, k));
-        if (a < 0 && b > 0)
-            return l->end[k - 1] * pow(l->end[k] / l->end[k - 1], a / (a - b));
+        double before = error_at(l, to, k - 1), now = error_at(l, to, k);
+        double a = log(error_at(l, from, k - 1) / before);
+        double b = log(error_at(l, from, k) / now), share = a / (a - b);
+        if (a < 0 && b > 0) {
+            *error = before * pow(now / before, share);
+            return l->end[k - 1] * pow(l->end[k] / l->end[k - 1], share);
+        }
     }
-    double gap =
-        log(error_at(l, to, LENGTHS - 1) / error_at(l, from, LENGTHS - 1));
-    double factor = exp(gap / (growth(l, from) - growth(l, to)));
-    double then = error_at(l, to, LENGTHS - 1) * pow(factor, growth(l, to));
-    return gap > 0 && growth(l, from) > growth(l, to) + 0.5 &&
-                   factor < FARTHEST && then < useless
+    return NAN;
+}
+
+/* Beyond the longest run, at the rates of both; NAN: none. */
+static double crossing_beyond(const lengths *l, size_t from, size_t to,
+                              double *error) {
+    enum { FARTHEST = 1000 }; /* lengths of the run */
+    double last = error_at(l, to, LENGTHS - 1);
+    double gap = log(last / error_at(l, from, LENGTHS - 1));
+    double rate = growth(l, from) - growth(l, to), factor = exp(gap / rate);
+    *error = last * pow(factor, growth(l, to));
+    return gap > 0 && rate > 0.5 && factor < FARTHEST
                ? l->end[LENGTHS - 1] * factor
                : NAN;
+}
+
+/* The length from which `to` errs less than `from`, which errs less before that;
+   NAN: none at which the orbit is still known. */
+static double crossing(const lengths *l, size_t from, size_t to) {
+    double error, t = crossing_within(l, from, to, &error);
+    if (isnan(t))
+        t = crossing_beyond(l, from, to, &error);
+    return error < useless ? t : NAN;
 }
 
 static bool is_symplectic(const lengths *l, size_t scheme) {
@@ -238,6 +255,18 @@ static void choose_step(plan *p, const options *o) {
     p->dt = p->given_dt;
 }
 
+/* Unless the end is given, one within the reach of the reference. */
+static int choose_end(plan *p, const options *o) {
+    static const double within = 0.9;
+    if (!o->t_end)
+        plan_shorten(p, SEARCH_BUDGET);
+    int status = p->by_state ? plan_reference(p, p->t_end) : TOOL_OK;
+    if (!status && !o->t_end && p->reference &&
+        p->t_end > nevh_reference_horizon(p->reference))
+        p->t_end = within * nevh_reference_horizon(p->reference);
+    return status || !p->by_state ? status : plan_require_reference(p);
+}
+
 int cost_lengths(const options *o) {
     lengths l = {0};
     plan *p = &l.plan;
@@ -246,12 +275,10 @@ int cost_lengths(const options *o) {
         p->match_work = true;
         p->by_state = !option_given(o, "by") || o->search.by;
         choose_step(p, o);
-        if (!o->t_end)
-            plan_shorten(p, SEARCH_BUDGET);
+        status = choose_end(p, o);
         double begin = p->run->t_start, span = p->t_end - begin;
         for (int k = 0; k < LENGTHS; k++)
             l.end[k] = begin + span / pow(FACTOR, LENGTHS - 1 - k);
-        status = p->by_state ? plan_require_reference(p) : TOOL_OK;
     }
     if (!status)
         status = print_lengths(&l, o);
