@@ -238,7 +238,7 @@ static void draw_panel(plot *to, const plan *p, const rows_drawn *d,
 static void add_note(plot *to, const plan *p, const rows_drawn *d) {
     bool adaptive = false, some = false;
     for (size_t i = 0; i < d->count; i++)
-        adaptive |= d->row[i].tolerance > 0 && d->axis == ORDER_DT;
+        adaptive |= d->row[i].tolerance > 0;
     for (size_t i = 0; i < d->count; i++) {
         size_t steps = 0;
         for (size_t k = 0; k < d->count; k++)

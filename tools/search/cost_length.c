@@ -215,6 +215,10 @@ static page page_of(const lengths *l, const options *o) {
                l->plan.by_state
                    ? "digits: -log10 of the largest error of the orbit"
                    : "digits: -log10 of the largest energy error");
+    if (l->schemes < l->plan.integrators.count * l->plan.gradients.count)
+        list_add(&result.before,
+                 "schemes that choose their steps are left out: their work is "
+                 "not matched");
     row_notes(o, &l->plan, l->row, l->schemes * LENGTHS, &result.before);
     state_notes(&l->plan, &result.before);
     crossing_words(l, &result.after);
@@ -226,6 +230,10 @@ static int print_lengths(lengths *l, const options *o) {
     if (plot_check(o) || output_open(&out, o->file))
         return TOOL_USAGE;
     int status = run_lengths(l, o);
+    if (!status && !l->schemes)
+        status =
+            tool_refuse("--against length needs an integrator of fixed steps: "
+                        "--integrators verlet,rk4");
     size_t count = status ? 0 : l->schemes * LENGTHS;
     if (!status) {
         page result = page_of(l, o);
@@ -246,6 +254,7 @@ static int print_lengths(lengths *l, const options *o) {
 static void choose_step(plan *p, const options *o) {
     static const double finer = 16;
     p->dts = 1;
+    p->tolerances = 0; /* their work would not match */
     if (o->dt.count)
         return;
     double dt = p->dt[0] / finer;
