@@ -13,7 +13,7 @@ void order_plot_steps(const options *, plan *);
    steps    how many each scheme is to have
    returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int order_plot_check(const options *, size_t steps);
-/* What errors are drawn against. */
+/* The axis that errors are drawn against. */
 typedef enum { ORDER_DT, ORDER_LENGTH } order_axis;
 /* A panel for each kind of error that the rows have; as plot_write. */
 int order_plot(const options *, const plan *, const row rows[], size_t count,

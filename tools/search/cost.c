@@ -330,8 +330,7 @@ const command cost_command = {
     .help = "what each digit costs, for each integrator",
     .examples =
         "cost oscillator --t-end 20\n"
-        "cost pendulum --t-end 20 --integrators verlet,gauss6,rk4 --by state --plot cost.svg\n"
-        "cost pendulum --against length --t-end 400",
+        "cost pendulum --against length --t-end 400 --integrators verlet,gauss6,rk4 --plot cost.svg",
     .options =
         "SCENE STEPS NATIVE TABLE PLOT by against observable repeat budget plot-kind",
     .draws = "order",

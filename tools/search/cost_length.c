@@ -199,7 +199,7 @@ static void crossing_word(const lengths *l, size_t from, size_t to,
     free(rounded);
 }
 
-/* Where one of the two is symplectic. */
+/* One of each pair is symplectic. */
 static void crossing_words(const lengths *l, list *words) {
     for (size_t i = 0; i < l->schemes; i++)
         for (size_t j = 0; j < l->schemes; j++)
