@@ -56,6 +56,7 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/stencil_private.h \
 	lib/gradient/stencil_plan.c \
 	lib/gradient/central_stencil.c \
+	lib/gradient/joined_terms.c \
 	lib/gradient/exact_block.c \
 	lib/gradient/exact_point.c \
 	lib/gradient/value.c \

@@ -7,7 +7,7 @@ suites = \
 	tests/system/check_structure \
 	tests/gradient/check_gradient \
 	tests/gradient/check_steps tests/gradient/check_rest \
-	tests/gradient/check_many_steps \
+	tests/gradient/check_many_steps tests/gradient/check_joined \
 	tests/gradient/check_step_reports \
 	tests/gradient/check_exact \
 	tests/gradient/check_portable \

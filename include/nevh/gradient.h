@@ -184,6 +184,10 @@ NEVH_API nevh_counts nevh_field_counts(const nevh_field *);
 /* Evaluations of instances of the terms of one effect; 0 if unknown or off. */
 NEVH_API uint64_t nevh_field_effect_values(const nevh_field *,
                                            const char *effect);
+/* The number of pieces that a gradient is taken of, one after another: a term,
+   or neighbouring terms of one formula.  Of some thousands each costs as much
+   as some tens of instances of a term.  0: there is no field. */
+NEVH_API size_t nevh_field_pieces(const nevh_field *);
 
 #ifdef __cplusplus
 }

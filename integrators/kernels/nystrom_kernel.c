@@ -174,24 +174,26 @@ static void forget(nevh_field *f) {
 
 /* The size of momentum k.  Where steps of differences are given, a momentum that is
    0 has a guess for its size, and that of the largest one is taken. */
-static double size_of_momentum(const nevh__nystrom_state *y, size_t k) {
+static double size_of_momentum(const nevh__nystrom_state *y, double largest,
+                               size_t k) {
     const nevh_options *o = y->work->options;
-    double most = 0;
     bool guessed = o->p && (o->gradient_steps || o->gradient_step > 0) &&
                    o->p[k * y->work->width] == 0;
-    for (size_t i = 0; guessed && i < y->n; i++)
-        most = fmax(most, fabs(o->p[i * y->work->width]));
-    return most > 0 ? most : y->work->scale[y->n + k];
+    return guessed && largest > 0 ? largest : y->work->scale[y->n + k];
 }
 
 /* T_p(0), and W from momenta of the size of p: powers of two, so that nothing
    is rounded. */
 static int find_kinetic(nevh__nystrom_state *y) {
+    const double *p = y->work->options->p;
+    double largest = 0;
+    for (size_t k = 0; p && k < y->n; k++)
+        largest = fmax(largest, fabs(p[k * y->work->width]));
     take_origin(y);
     int status = ask(y, y->rest);
     for (size_t k = 0; !status && k < y->n; k++) {
         y->x.moves |= y->rest[k] != 0;
-        y->x.momenta[k] = exp2(round(log2(size_of_momentum(y, k))));
+        y->x.momenta[k] = exp2(round(log2(size_of_momentum(y, largest, k))));
     }
     if (!status && y->x.diagonal)
         status = ask(y, y->inverse);

@@ -11,13 +11,12 @@
 static const double tolerance = 1e-10, usual_seconds = 2, usual_budget = 0.5;
 enum { STARTS = 4, LOOKS = 1024, PIECES = 64, LARGEST = 4096 };
 
-/* The cost of gradients of many terms, each by a call of its own, above that of
-   few, which nevh_counts_seconds has. */
+/* The cost of gradients of many pieces, above that of few, which
+   nevh_counts_seconds has. */
 static double spent_on_terms(const nevh_chaos *c, const nevh_counts *counts) {
     static const double a_term = 8e-8, few = 32;
-    const nevh_system *s = c->tangent ? c->variational->system : c->system;
-    return a_term * fmax(0, (double)s->n_terms - few) *
-           (double)counts->gradients;
+    size_t pieces = nevh_field_pieces(nevh_stepper_field(c->stepper));
+    return a_term * fmax(0, (double)pieces - few) * (double)counts->gradients;
 }
 
 static double chaos_confirm_spent_by(const nevh_chaos *c) {

@@ -68,10 +68,15 @@ int nevh__field_terms(nevh_field *f, const nevh__places *at) {
     if (at->dh_dp && !nevh__writes(f, f->whole_p, at->width))
         memset(at->dh_dp, 0, size);
     nevh__gradient_fn evaluate = f->gradient->evaluate;
-    nevh__planned *term = f->terms, *end = term + f->n_terms;
-    for (; !status && term < end; term++)
-        if (nevh__wanted(f, at, term))
-            status = evaluate(f, term, at);
+    for (size_t i = 0; !status && i < f->n_pieces; i++) {
+        nevh__planned *piece = f->pieces[i];
+        if (!nevh__wanted(f, at, piece))
+            continue;
+        status = evaluate(f, piece, at);
+        nevh__joint_count(f, piece);
+        if (status)
+            status = nevh__joint_fail(f, piece, at, status);
+    }
     return status;
 }
 

@@ -8,32 +8,39 @@
 #include "system/pairs_private.h"
 #include <math.h>
 #include <nevh/body.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Terms that do not fit into one block need no maps. */
-static bool exact_gather_plan_term(const nevh_field *f, nevh__planned *term) {
+static bool exact_gather_plan_term(const nevh_field *f, nevh__planned *term,
+                                   size_t uses[]) {
     const nevh_term *decl = &term->term->decl;
     size_t constants = decl->nc * f->capacity;
     nevh__pairs pairs;
     term->turned =
         nevh__pairs_find(&pairs, term->nq, term->np, decl->count, decl->q) &&
         nevh__pairs_are_turned(&pairs);
+    term->turned |= term->members != NULL;
     if (decl->count > f->capacity)
         return true;
     if (constants &&
         !(term->gathered = nevh__array(constants, sizeof *term->gathered)))
         return false;
-    return nevh__scatter_map_init(&term->to_q, f->n, term->nq, decl->count,
-                                  decl->q, term->turned) &&
-           nevh__scatter_map_init(&term->to_p, f->n, term->np, decl->count,
-                                  decl->p, false);
+    term->mapped =
+        nevh__scatter_map_init(&term->to_q, uses, term->nq, decl->count,
+                               decl->q, term->turned) &&
+        nevh__scatter_map_init(&term->to_p, uses, term->np, decl->count,
+                               decl->p, term->members != NULL);
+    return term->mapped;
 }
 
 bool nevh__exact_gather_plan(nevh_field *f) {
     bool q = false, p = false; /* whether a term has a share in them */
-    for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++) {
-        if (!exact_gather_plan_term(f, term))
-            return false;
+    size_t *uses = nevh__array(f->n, sizeof *uses);
+    bool fine = uses;
+    for (size_t i = 0; fine && i < f->n_pieces; i++) {
+        nevh__planned *term = f->pieces[i];
+        fine = exact_gather_plan_term(f, term, uses);
         size_t count = term->term->decl.count;
         if (!q && term->to_q.contiguous && term->nq * count == f->n)
             f->whole_q = term;
@@ -42,7 +49,8 @@ bool nevh__exact_gather_plan(nevh_field *f) {
         q |= term->nq > 0;
         p |= term->np > 0;
     }
-    return true;
+    free(uses);
+    return fine;
 }
 
 /* The constants of the last width are kept. */
@@ -168,6 +176,21 @@ static bool add_groups(const nevh__planned *term, const nevh__block *b,
     return bad == 0;
 }
 
+/* The same of one lane, instance by instance. */
+static bool add_in_turn(const nevh_field *f, const nevh__planned *term,
+                        const nevh__block *b, size_t first, size_t last,
+                        const nevh__places *at) {
+    double bad = 0;
+    for (size_t group = 0; group < b->groups; group++)
+        for (size_t k = first; k < last; k++) {
+            size_t i = nevh__index(term, b->group + group, k);
+            double x = f->slopes[k * b->stride + group];
+            (k < term->nq ? at->dh_dq : at->dh_dp)[i * b->width + b->lane] += x;
+            bad += x - x;
+        }
+    return bad == 0;
+}
+
 static int exact_gather_fail(nevh_field *f, const nevh__planned *term,
                              const nevh__block *b, const double *row) {
     size_t column = 0;
@@ -190,6 +213,9 @@ static int exact_gather_take_part(nevh_field *f, nevh__planned *term,
         at->dh_dq ? f->slopes : NULL, at->dh_dp ? slopes_p : NULL);
     size_t first = at->dh_dq ? 0 : term->nq,
            last = at->dh_dp ? term->nv : term->nq;
+    if (term->turned && b->lanes == 1 &&
+        add_in_turn(f, term, b, first, last, at))
+        return NEVH_OK;
     size_t each = term->turned ? 1 : b->groups;
     for (size_t from = 0; from < b->groups; from += each)
         for (size_t k = first; k < last; k++) {
@@ -213,6 +239,7 @@ static int take_parts(nevh_field *f, nevh__planned *term,
 /* A block that is not finite is taken again, in parts that tell where. */
 int nevh__gradient_exact(nevh_field *f, nevh__planned *term,
                          const nevh__places *at) {
-    bool fits = term->term->decl.count * at->width <= f->capacity;
+    bool fits =
+        term->mapped && term->term->decl.count * at->width <= f->capacity;
     return fits && take_block(f, term, at) ? NEVH_OK : take_parts(f, term, at);
 }

@@ -4,22 +4,28 @@
 #include <stdlib.h>
 #include <string.h>
 
+void nevh__planned_clear(nevh__planned *x) {
+    free(x->gathered);
+    x->gathered = NULL;
+    nevh__central_stencil_clear(x);
+    nevh__scatter_map_clear(&x->to_q);
+    nevh__scatter_map_clear(&x->to_p);
+}
+
 void nevh_field_free(nevh_field *f) {
     if (!f)
         return;
+    nevh__joints_clear(f);
     for (size_t i = 0; f->terms && i < f->n_terms; i++) {
         free(f->terms[i].delta);
         free(f->terms[i].steps);
         free(f->terms[i].vars);
-        free(f->terms[i].gathered);
         free(f->terms[i].lane_c);
         free(f->terms[i].lane_delta);
         nevh__constants_free(f->terms[i].constants);
-        nevh__central_stencil_clear(&f->terms[i]);
-        nevh__scatter_map_clear(&f->terms[i].to_q);
-        nevh__scatter_map_clear(&f->terms[i].to_p);
     }
     free(f->terms);
+    free(f->pieces);
     nevh__single_free(f->single);
     free(f->scale);
     free(f->length);
@@ -70,6 +76,10 @@ nevh_counts nevh_field_counts(const nevh_field *f) {
     if (f->instances)
         counts.hamiltonians = (double)counts.values / (double)f->instances;
     return counts;
+}
+
+size_t nevh_field_pieces(const nevh_field *f) {
+    return f ? f->n_pieces : 0;
 }
 
 uint64_t nevh_field_effect_values(const nevh_field *f, const char *effect) {

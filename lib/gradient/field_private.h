@@ -34,6 +34,8 @@ typedef struct {
 
 /* The points of the differences of a term; see stencil_plan.c. */
 typedef struct nevh__stencil nevh__stencil;
+/* Terms that are evaluated as instances of one; see joined_terms.c. */
+typedef struct nevh__joint nevh__joint;
 
 typedef struct {
     const nevh__term_entry *term;
@@ -47,7 +49,8 @@ typedef struct {
     uint64_t values;
     nevh__stencil *stencil[3]; /* of dH/dq, dH/dp, both; NULL: by blocks */
     struct nevh__constants *constants; /* of evaluations */
-    nevh__scatter_map to_q, to_p;      /* of exact_gather: no targets: none */
+    nevh__scatter_map to_q, to_p;      /* of exact_gather, if mapped */
+    bool mapped;
     double *gathered; /* constants of a block of all instances and of so many */
     size_t gathered_width; /* states, those that were asked for last */
     bool
@@ -55,6 +58,7 @@ typedef struct {
     /* Rows of the field's lanes, where these differ, in place of the term's
        constants and of delta: count x nc and count x nv. */
     double *lane_c, *lane_delta;
+    nevh__joint *members; /* NULL: it is a term of the system */
 } nevh__planned;
 
 /* Adds a term's gradient at any places, or writes it: nevh__writes. */
@@ -88,6 +92,9 @@ struct nevh_field {
                        verified; or NULL */
     nevh__planned *terms;
     size_t n_terms, instances, n_steps;
+    nevh__planned **pieces; /* what a gradient evaluates: terms, and joints of
+                              some */
+    size_t n_pieces;
     size_t capacity;   /* columns that the rows below have room for */
     double *workspace; /* holds all below but the Jacobian */
     double *rows;      /* variables and constants of a block */
@@ -210,6 +217,17 @@ bool nevh__central_stencil_plan(nevh_field *);
 void nevh__central_stencil_clear(nevh__planned *);
 void nevh__central_stencils_clear(nevh_field *); /* those of all terms */
 bool nevh__exact_gather_plan(nevh_field *);
+/* Lists what a gradient evaluates, of terms whose steps are chosen; false if memory
+   is out. */
+bool nevh__field_join(nevh_field *);
+void nevh__joints_clear(nevh_field *);
+/* Counts for the members what was counted for their joint. */
+void nevh__joint_count(nevh_field *, nevh__planned *);
+/* Records which member it is that fails, if it is a joint; returns the status. */
+int nevh__joint_fail(nevh_field *, const nevh__planned *, const nevh__places *,
+                     int status);
+/* Frees what evaluates a term, or a joint. */
+void nevh__planned_clear(nevh__planned *);
 /* True if one state may be repeated over a vector at no extra cost. */
 bool nevh__exact_block_broadcasts(const nevh_field *);
 

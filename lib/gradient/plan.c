@@ -93,8 +93,10 @@ static size_t block_columns(size_t reads) {
 
 static int plan_workspace(nevh_field *f) {
     size_t variables = 0, reads = 0;
-    for (size_t i = 0; i < f->n_terms; i++) {
-        const nevh__planned *term = &f->terms[i];
+    if (!nevh__field_join(f))
+        return nevh__no_memory(&f->report);
+    for (size_t i = 0; i < f->n_pieces; i++) {
+        const nevh__planned *term = f->pieces[i];
         size_t all = term->nv + term->term->decl.nc;
         variables = term->nv > variables ? term->nv : variables;
         reads = all > reads ? all : reads;
@@ -294,9 +296,10 @@ nevh_field *nevh__field_of(const nevh_system *s, const nevh_options *options,
     f->gradient = o->gradient ? o->gradient : nevh_central4;
     f->parts = NEVH__ALL_PARTS;
     f->terms = nevh__array(s->n_terms, sizeof *f->terms);
+    f->pieces = nevh__array(s->n_terms, sizeof *f->pieces);
     fenv_t own; /* as in nevh_stepper_new */
     feholdexcept(&own);
-    int status = f->terms ? plan_field(f, o, part) : NEVH_ENOMEM;
+    int status = f->terms && f->pieces ? plan_field(f, o, part) : NEVH_ENOMEM;
     fesetenv(&own);
     if (status != NEVH_ENOMEM)
         return f;

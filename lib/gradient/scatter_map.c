@@ -8,27 +8,23 @@
 #include <nevh/body.h>
 #include <stdlib.h>
 
-static size_t count_targets(size_t n, const size_t uses[]) {
-    size_t targets = 0;
-    for (size_t v = 0; v < n; v++)
-        targets += uses[v] > 0;
-    return targets;
+/* The targets, as they are met first. */
+static void list_targets(nevh__scatter_map *x, const size_t index[],
+                         size_t uses[]) {
+    for (size_t i = 0; i < x->rows * x->count; i++)
+        if (uses[index[i]]++ == 0)
+            x->target[x->targets++] = index[i];
 }
 
-/* The targets, and where the list of each begins; `uses` becomes the place of
-   the next entry. */
-static void begin_lists(nevh__scatter_map *x, size_t n, size_t uses[]) {
-    size_t at = 0, target = 0;
-    for (size_t v = 0; v < n; v++) {
-        size_t count = uses[v];
-        if (count == 0)
-            continue;
-        x->target[target] = v;
-        x->begin[target++] = at;
-        uses[v] = at;
+/* Sets where the list of each begins; `uses` becomes the place of the next entry. */
+static void begin_lists(nevh__scatter_map *x, size_t uses[]) {
+    size_t at = 0;
+    for (size_t i = 0; i < x->targets; i++) {
+        size_t count = uses[x->target[i]];
+        x->begin[i] = uses[x->target[i]] = at;
         at += count;
     }
-    x->begin[target] = at;
+    x->begin[x->targets] = at;
 }
 
 static void list(nevh__scatter_map *x, const size_t index[], size_t uses[],
@@ -50,30 +46,25 @@ static void scatter_map_fill(nevh__scatter_map *x, const size_t index[],
             list(x, index, uses, k, i);
 }
 
-bool nevh__scatter_map_init(nevh__scatter_map *x, size_t n, size_t rows,
+bool nevh__scatter_map_init(nevh__scatter_map *x, size_t uses[], size_t rows,
                             size_t count, const size_t index[], bool in_turn) {
-    size_t *uses = nevh__array(n, sizeof *uses);
-    if (!uses)
-        return false;
-    for (size_t i = 0; i < rows * count; i++)
-        uses[index[i]]++;
     *x =
         (nevh__scatter_map){.rows = rows,
                             .count = count,
                             .stride = nevh__padded(count),
-                            .targets = count_targets(n, uses),
                             .contiguous = nevh__contiguous(index, rows, count)};
     x->source = nevh__array(rows * x->stride, sizeof *x->source);
-    x->target = nevh__array(x->targets, sizeof *x->target);
-    x->begin = nevh__array(x->targets + 1, sizeof *x->begin);
+    x->target = nevh__array(rows * count, sizeof *x->target);
+    x->begin = nevh__array(rows * count + 1, sizeof *x->begin);
     x->column = nevh__array(rows * count, sizeof *x->column);
-    bool all = x->source && x->target && x->begin && x->column;
-    if (all) {
-        begin_lists(x, n, uses);
-        scatter_map_fill(x, index, uses, in_turn);
-    }
-    free(uses);
-    return all;
+    if (!x->source || !x->target || !x->begin || !x->column)
+        return false;
+    list_targets(x, index, uses);
+    begin_lists(x, uses);
+    scatter_map_fill(x, index, uses, in_turn);
+    for (size_t i = 0; i < x->targets; i++)
+        uses[x->target[i]] = 0;
+    return true;
 }
 
 void nevh__scatter_map_clear(nevh__scatter_map *x) {

@@ -21,9 +21,10 @@ typedef struct {
 
 /* For `count` instances whose variable k of instance i is index[i*rows + k] of
    n; false when memory is out.
+   uses     n zeros, before and after
    in_turn  what instances give is added instance by instance, not variable by
             variable */
-bool nevh__scatter_map_init(nevh__scatter_map *, size_t n, size_t rows,
+bool nevh__scatter_map_init(nevh__scatter_map *, size_t uses[], size_t rows,
                             size_t count, const size_t index[], bool in_turn);
 void nevh__scatter_map_clear(nevh__scatter_map *);
 /* Fills rows of `stride` with all instances of `width` lanes, and then with

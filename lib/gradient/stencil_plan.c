@@ -122,12 +122,16 @@ static bool covers(const nevh_field *f, const nevh__stencil *s) {
 
 bool nevh__central_stencil_plan(nevh_field *f) {
     bool q = false, p = false; /* whether a term has a share in them */
-    for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++) {
+    if (!nevh__field_join(f))
+        return false;
+    for (size_t i = 0; i < f->n_pieces; i++) {
+        nevh__planned *term = f->pieces[i];
         for (size_t part = 0; part < 3; part++)
             if (!plan_part(f, term, part))
                 return false;
         /* Both halves have a stencil, or else blocks add them. */
         bool both = !term->nq || !term->np || term->stencil[2];
+        both = both && !term->members; /* which add to 0 */
         if (!q && both && covers(f, term->stencil[0]))
             f->whole_q = term;
         if (!p && both && covers(f, term->stencil[1]))
@@ -154,8 +158,8 @@ void nevh__central_stencil_clear(nevh__planned *term) {
 }
 
 void nevh__central_stencils_clear(nevh_field *f) {
-    for (size_t i = 0; i < f->n_terms; i++)
-        nevh__central_stencil_clear(&f->terms[i]);
+    for (size_t i = 0; i < f->n_pieces; i++)
+        nevh__central_stencil_clear(f->pieces[i]);
     f->whole_q = f->whole_p = NULL;
 }
 

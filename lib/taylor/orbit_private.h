@@ -27,6 +27,7 @@ enum { NEVH__ORBIT_PAST = 128 };
         real *start;     /* 2n: of the series */                                   \
         real *state;     /* 2n: as asked for last */                               \
         double *most;    /* 2n: of each variable, so far */                        \
+        double usual[2]; /* of either half: the first that is not 0, or 1 */       \
         double *seen;    /* 2n: the same, and within series */                     \
         double *term; /* 2n: the largest term of a series, so far, which     \
                            rounding is in proportion to */     \

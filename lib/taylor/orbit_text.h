@@ -54,11 +54,7 @@ void NAMED(nevh__series_orbit_clear)(orbit *o) {
 /* The unit of a variable's error: its largest value so far, or that of the others
    of its half. */
 static double size_of(const orbit *o, size_t i) {
-    size_t from = i < o->n ? 0 : o->n;
-    double most = o->most[i];
-    for (size_t k = from; most == 0 && k < from + o->n; k++)
-        most = o->most[k];
-    return most > 0 ? most : 1;
+    return o->most[i] > 0 ? o->most[i] : o->usual[i >= o->n];
 }
 
 static long double largest(const orbit *o, size_t order) {
@@ -210,6 +206,12 @@ static void limit_by_convergence(orbit *o) {
 static void note_state(orbit *o, const real state[]) {
     for (size_t i = 0; i < 2 * o->n; i++)
         o->most[i] = fmax(o->most[i], fabs((double)state[i]));
+    for (size_t half = 0; half < 2; half++) {
+        size_t i = half * o->n, end = i + o->n;
+        while (i < end && o->most[i] == 0)
+            i++;
+        o->usual[half] = i < end ? o->most[i] : 1;
+    }
 }
 
 /* The shortest time in which a coefficient says that a variable changes by its size,

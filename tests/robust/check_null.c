@@ -128,6 +128,7 @@ static nevh_separability separability;
     X(STATUS, nevh_field_energy_floor, (NULL, 0.1, in, in, 0.1, 1, out))       \
     X(ANY, nevh_field_counts, (NULL))                                          \
     X(NUMBER, nevh_field_effect_values, (NULL, "x"))                           \
+    X(NUMBER, nevh_field_pieces, (NULL))                                       \
     X(POINTER, nevh_integrator_new, (NULL, NULL))                              \
     X(ANY, nevh_integrator_free, (NULL))                                       \
     X(STATUS, nevh_integrator_facts, (NULL, NULL))                             \

@@ -224,12 +224,11 @@ static nevh_stepper *new_stepper(const trial *f) {
     return nevh_stepper_new(p->system, nevh_dop853, &o);
 }
 
-/* An effect of many is a call of its own, which costs as much as so many of its
-   instances. */
+/* A piece of many costs as much as so many instances. */
 static double cost_of_gradient(const trial *f) {
-    static const double a_call = 40, few = 100;
-    double effects = (double)nevh_system_effect_count(f->plan->system);
-    return f->instances + a_call * fmax(0, effects - few);
+    static const double a_piece = 40, few = 100;
+    double pieces = (double)nevh_field_pieces(f->gradient);
+    return f->instances + a_piece * fmax(0, pieces - few);
 }
 
 static double count_instances(const trial *f) {

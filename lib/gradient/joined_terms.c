@@ -1,0 +1,228 @@
+/* nevh: neighbouring terms of one formula are evaluated together.
+
+   Many effects that are written out one by one, such as the springs of a
+   lattice, have one formula of other variables and numbers.  A gradient takes
+   them as instances of one term, whose constants are the numbers that differ.
+   Terms are neighbours in dH/dq, or in dH/dp, if no other term adds to that
+   half between them; and instances add in turn.  So sums have the same bits as
+   those of the terms, one after another.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "expression/tape_private.h"
+#include "gradient/evaluation_private.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* Evaluations of small systems have at most NEVH__MOST_PARTS terms. */
+enum { FEWEST = NEVH__MOST_PARTS + 1 };
+
+/* Terms that may be joined; members are linked by `next`. */
+typedef struct {
+    size_t first, last, count;
+} run;
+
+struct nevh__joint {
+    nevh__planned plan; /* vars and passes are those of the first member */
+    nevh__term_entry entry;
+    nevh__tape *tape; /* with constants; NULL: the first one's */
+    size_t *q, *p;
+    double *c;
+    size_t members[];
+};
+
+/* Differences go pass by pass through all instances. */
+static bool has_one_pass(const nevh__planned *x) {
+    return x->pass[0].begin == x->pass[0].end ||
+           x->pass[1].begin == x->pass[1].end;
+}
+
+static bool is_differenced_alike(const nevh__planned *x,
+                                 const nevh__planned *y) {
+    return !x->vars ||
+           (has_one_pass(x) && memcmp(x->pass, y->pass, sizeof x->pass) == 0 &&
+            memcmp(x->vars, y->vars, x->nv * sizeof *x->vars) == 0);
+}
+
+static bool is_alike(const nevh__planned *x, const nevh__planned *y) {
+    const nevh_term *a = &x->term->decl, *b = &y->term->decl;
+    return a->count == 1 && b->count == 1 && x->part == y->part &&
+           a->nq == b->nq && a->np == b->np && a->nc == b->nc &&
+           a->time == b->time && a->value == b->value && a->block == b->block &&
+           a->gradient == b->gradient && is_differenced_alike(x, y) &&
+           (a->params == b->params || (a->value == nevh__tape_value &&
+                                       nevh__tape_alike(a->params, b->params)));
+}
+
+/* Marks the numbers that differ; returns how many do. */
+static size_t mark_numbers(const nevh_field *f, const nevh__joint *j,
+                           bool opened[]) {
+    const double *own, *first;
+    size_t count = nevh__tape_numbers(j->entry.decl.params, &first), open = 0;
+    for (size_t i = 1; i < j->entry.decl.count; i++) {
+        nevh__tape_numbers(f->terms[j->members[i]].term->decl.params, &own);
+        for (size_t k = 0; own != first && k < count; k++)
+            opened[k] |= memcmp(&own[k], &first[k], sizeof *own) != 0;
+    }
+    for (size_t k = 0; k < count; k++)
+        open += opened[k];
+    return open;
+}
+
+/* False when memory is out. */
+static bool open_numbers(const nevh_field *f, nevh__joint *j, bool **opened) {
+    const double *numbers;
+    nevh_term *decl = &j->entry.decl;
+    if (decl->value != nevh__tape_value)
+        return true;
+    *opened =
+        nevh__array(nevh__tape_numbers(decl->params, &numbers), sizeof(bool));
+    size_t open = *opened ? mark_numbers(f, j, *opened) : 0;
+    if (open)
+        j->tape = nevh__tape_open(decl->params, *opened);
+    if (j->tape)
+        decl->params = j->tape;
+    decl->nc += open;
+    return *opened && (!open || j->tape);
+}
+
+static void take_member(const nevh_field *f, nevh__joint *j, size_t i,
+                        const bool opened[]) {
+    const nevh__planned *from = &f->terms[j->members[i]];
+    const nevh_term *x = &from->term->decl;
+    const double *numbers;
+    memcpy(j->q + i * from->nq, x->q, from->nq * sizeof *j->q);
+    memcpy(j->p + i * from->np, x->p, from->np * sizeof *j->p);
+    if (from->delta)
+        memcpy(j->plan.delta + i * from->nv, from->delta,
+               from->nv * sizeof *from->delta);
+    double *c = j->c + i * j->entry.decl.nc;
+    memcpy(c, x->c, x->nc * sizeof *c);
+    c += x->nc;
+    size_t count = j->tape ? nevh__tape_numbers(x->params, &numbers) : 0;
+    for (size_t k = 0; k < count; k++)
+        if (opened[k])
+            *c++ = numbers[k];
+}
+
+static bool joint_fill(const nevh_field *f, nevh__joint *j) {
+    nevh_term *decl = &j->entry.decl;
+    bool *opened = NULL, fine = open_numbers(f, j, &opened);
+    decl->q = j->q = nevh__array(decl->count * decl->nq, sizeof *j->q);
+    decl->p = j->p = nevh__array(decl->count * decl->np, sizeof *j->p);
+    decl->c = j->c = nevh__array(decl->count * decl->nc, sizeof *j->c);
+    if (j->plan.delta)
+        j->plan.delta = nevh__array(decl->count * j->plan.nv, sizeof(double));
+    fine = fine && j->q && j->p && j->c;
+    fine = fine && (j->plan.delta || !f->gradient->offsets);
+    for (size_t i = 0; fine && i < decl->count; i++)
+        take_member(f, j, i, opened);
+    free(opened);
+    return fine;
+}
+
+/* False when memory is out. */
+static bool joint_new(nevh_field *f, const run *r, const size_t next[]) {
+    nevh__joint *j = nevh__array(1, sizeof *j + r->count * sizeof *j->members);
+    if (!j)
+        return false;
+    const nevh__planned *first = &f->terms[r->first];
+    j->entry = *first->term;
+    j->entry.decl.count = r->count;
+    j->plan = (nevh__planned){.term = &j->entry,
+                              .nq = first->nq,
+                              .np = first->np,
+                              .nv = first->nv,
+                              .part = first->part,
+                              .delta = first->delta,
+                              .vars = first->vars,
+                              .pass = {first->pass[0], first->pass[1]},
+                              .members = j};
+    for (size_t i = 0, at = r->first; i < r->count; i++, at = next[at])
+        j->members[i] = at;
+    f->pieces[f->n_pieces++] = &j->plan;
+    return joint_fill(f, j);
+}
+
+void nevh__joints_clear(nevh_field *f) {
+    for (size_t i = 0; i < f->n_pieces; i++) {
+        nevh__joint *j = f->pieces[i]->members;
+        nevh__planned_clear(f->pieces[i]);
+        if (!j)
+            continue;
+        nevh__tape_free(j->tape);
+        free(j->plan.delta);
+        free(j->q);
+        free(j->p);
+        free(j->c);
+        free(j);
+    }
+    f->n_pieces = 0;
+}
+
+/* The run that a term continues, or a new one. */
+static size_t run_of(const nevh_field *f, size_t i, const run runs[],
+                     size_t count, size_t last_q, size_t last_p) {
+    const nevh__planned *x = &f->terms[i];
+    size_t last = x->nq ? last_q : last_p;
+    bool both = !x->nq || !x->np || last_q == last_p;
+    return x->nv && both && last < count &&
+                   is_alike(&f->terms[runs[last].first], x)
+               ? last
+               : count;
+}
+
+static size_t find_runs(const nevh_field *f, run runs[], size_t next[]) {
+    size_t count = 0, last_q = SIZE_MAX, last_p = SIZE_MAX;
+    bool joins = f->gradient->evaluate && !f->system->by_lane;
+    for (size_t i = 0; i < f->n_terms; i++) {
+        size_t at = joins ? run_of(f, i, runs, count, last_q, last_p) : count;
+        if (at == count)
+            runs[count++] = (run){i, i, 0};
+        next[runs[at].last] = i;
+        runs[at].last = i;
+        runs[at].count++;
+        if (f->terms[i].nq)
+            last_q = at;
+        if (f->terms[i].np)
+            last_p = at;
+    }
+    return count;
+}
+
+bool nevh__field_join(nevh_field *f) {
+    nevh__joints_clear(f);
+    run *runs = nevh__array(f->n_terms, sizeof *runs);
+    size_t *next = nevh__array(f->n_terms, sizeof *next);
+    bool fine = runs && next;
+    size_t count = fine ? find_runs(f, runs, next) : 0;
+    for (const run *r = runs; fine && r < runs + count; r++)
+        if (r->count >= FEWEST)
+            fine = joint_new(f, r, next);
+        else
+            for (size_t i = 0, at = r->first; i < r->count; i++, at = next[at])
+                f->pieces[f->n_pieces++] = &f->terms[at];
+    free(runs);
+    free(next);
+    return fine;
+}
+
+void nevh__joint_count(nevh_field *f, nevh__planned *piece) {
+    size_t count = piece->members ? piece->term->decl.count : 0;
+    for (size_t i = 0; piece->values && i < count; i++)
+        f->terms[piece->members->members[i]].values += piece->values / count;
+    piece->values = count ? 0 : piece->values;
+}
+
+int nevh__joint_fail(nevh_field *f, const nevh__planned *piece,
+                     const nevh__places *at, int status) {
+    nevh__report told = f->report;
+    size_t count = piece->members ? piece->term->decl.count : 0;
+    for (size_t i = 0; i < count; i++) {
+        f->report = (nevh__report){0};
+        int own =
+            f->gradient->evaluate(f, &f->terms[piece->members->members[i]], at);
+        if (own)
+            return own;
+    }
+    f->report = told;
+    return status;
+}
