@@ -207,3 +207,22 @@ bool nevh__kink_between(nevh_field *f, double t, const double from[],
     (void)f, (void)t, (void)from, (void)to, (void)largest, (void)room;
     return false;
 }
+
+/* Scenes of a page have few effects: each term is taken by itself. */
+bool nevh__field_join(nevh_field *f) {
+    for (f->n_pieces = 0; f->n_pieces < f->n_terms; f->n_pieces++)
+        f->pieces[f->n_pieces] = &f->terms[f->n_pieces];
+    return true;
+}
+void nevh__joints_clear(nevh_field *f) {
+    for (; f->n_pieces > 0; f->n_pieces--)
+        nevh__planned_clear(f->pieces[f->n_pieces - 1]);
+}
+void nevh__joint_count(nevh_field *f, nevh__planned *piece) {
+    (void)f, (void)piece;
+}
+int nevh__joint_fail(nevh_field *f, const nevh__planned *piece,
+                     const nevh__places *at, int status) {
+    (void)f, (void)piece, (void)at;
+    return status;
+}
