@@ -85,24 +85,46 @@ static double central_block_reach_of(const nevh_field *f,
     return most;
 }
 
-/* Told and true where an instance has no value on the orbit itself.  Fills the
-   rows. */
-static bool fails_on_orbit(nevh_field *f, nevh__planned *term,
-                           const nevh__block *b, size_t lane, size_t instance) {
+/* Fills the rows with the orbit's own points; *column is that of the instance. */
+static nevh__block orbit_block(nevh_field *f, const nevh__planned *term,
+                               const nevh__block *b, size_t lane,
+                               size_t instance, size_t *column) {
     nevh__block one = nevh__block_over(b->width, b->t, b->q, b->p, 1, 1);
-    uint64_t counted = term->values;
     one.first = b->first;
     one.lane = lane;
     one.until = lane + 1;
     while (nevh__block_next(f, term, &one) &&
            one.group + one.groups <= instance)
         continue;
+    *column = instance - one.group;
+    return one;
+}
+
+/* Told and true where an instance has no value on the orbit itself, or none one
+   rounding beside it in variable k. */
+static bool fails_on_orbit(nevh_field *f, nevh__planned *term,
+                           const nevh__block *b, size_t lane, size_t instance,
+                           size_t k) {
+    size_t column;
+    nevh__block one = orbit_block(f, term, b, lane, instance, &column);
+    uint64_t counted = term->values;
+    char name[NEVH__VARIABLE], edge[200] = "";
+    double *z = f->rows + k * one.stride + column, orbit = *z;
     nevh__block_evaluate(f, term, &one);
+    for (int side = 0; side < 2 && isfinite(f->h[column]); side++) {
+        *z = nextafter(orbit, side ? -INFINITY : INFINITY);
+        nevh__block_evaluate(f, term, &one);
+        nevh__variable_name(f->system, k >= term->nq,
+                            nevh__index(term, instance, k), name);
+        nevh__print(edge, sizeof edge,
+                    "no difference by %s can be taken at %s = %.9g, an edge of "
+                    "the domain of H, where its slope may be infinite: %s it, ",
+                    name, name, orbit, side ? "below" : "above");
+    }
     term->values = counted;
-    size_t column = instance - one.group;
     if (isfinite(f->h[column]))
         return false;
-    nevh__block_fail(f, term, &one, column, "", f->h[column]);
+    nevh__block_fail(f, term, &one, column, edge, f->h[column]);
     return true;
 }
 
@@ -120,7 +142,7 @@ int nevh__fail_outside(nevh_field *f, nevh__planned *term, const nevh__block *b,
     int status = nevh__block_fail(f, term, b, column, where, f->h[column]);
     nevh__report outside = f->report;
     f->report = report;
-    if (!fails_on_orbit(f, term, b, b->lane + column % b->lanes, instance))
+    if (!fails_on_orbit(f, term, b, b->lane + column % b->lanes, instance, k))
         f->report = outside;
     return status;
 }
@@ -138,6 +160,8 @@ int nevh__central_fail(nevh_field *f, nevh__planned *term, const nevh__block *b,
     char name[NEVH__VARIABLE], when[40] = "";
     size_t index = nevh__index(term, instance, k);
     const double *z = k < term->nq ? b->q : b->p;
+    if (fails_on_orbit(f, term, b, lane, instance, k))
+        return f->report.status;
     if (decl->time)
         nevh__print(when, sizeof when, ", t = %.9g", b->t[lane]);
     nevh__variable_name(f->system, k >= term->nq, index, name);

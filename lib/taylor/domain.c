@@ -172,10 +172,7 @@ size_t nevh__domain_kink(const nevh__recurrence *r) {
 void nevh__domain_words(const nevh__recurrence *r, size_t edge, char text[],
                         size_t room) {
     const nevh__edge *e = &r->edges[edge];
-    snprintf(text, room,
-             "%s%s%s%s is not analytic there, and a series knows "
-             "nothing of what follows",
-             nevh__operation_of(e->function)->at_edge,
+    snprintf(text, room, "%s%s%s%s", nevh__operation_of(e->function)->at_edge,
              e->effect ? " in effect \"" : "", e->effect ? e->effect : "",
              e->effect ? "\"" : "");
 }

@@ -119,8 +119,14 @@ static int fail_at_edge(const orbit *o, double t, nevh__report *report) {
     if (edge == SIZE_MAX)
         return NEVH_OK;
     nevh__domain_words(o->recurrence, edge, why, sizeof why);
-    return nevh__fail(report, NEVH_EDOM, "the series ends near t = %.9g: %s", t,
-                      why);
+    return nevh__fail(report, o->ended ? NEVH_EFAILED : NEVH_EDOM,
+                      o->ended
+                          ? "the solution itself ends at t = %.9g: it "
+                            "changes without bound there, with %s"
+                          : "the series ends near t = %.9g: %s is not "
+                            "analytic there, and a series knows nothing of "
+                            "what follows",
+                      t, why);
 }
 
 /* No further than what changes with time allows, and up to the next break. */
@@ -305,7 +311,7 @@ int NAMED(nevh__series_orbit_next)(orbit *o, real t, nevh__report *report) {
     if (!(o->reach > o->shortest * FUNCTION(fabs)(t - o->t)) || next == o->t) {
         o->ended =
             ends(o) && !nevh__domain_is_closed(o->recurrence, edge_of(o));
-        int status = o->ended ? NEVH_OK : fail_at_edge(o, (double)o->t, report);
+        int status = fail_at_edge(o, (double)o->t, report);
         return status ? status
                       : nevh__fail(report, NEVH_EFAILED,
                                    o->ended ? "the solution itself ends at t = "

@@ -39,6 +39,19 @@ tells 'the first, member 0: the solution itself ends at t = 5.15195' \
 tells 'the first, member 0: the solution itself ends at t = 2,' \
     sweep $work/flow.nevh --vary 'p_x = range(1, 2, 2)'
 
+# No verdict on a run past that end.
+exits 0 compare $work/fall.nevh --t-end 6 --format csv
+has '^[^#].*,rk4,.*,undecided,'
+lacks '^[^#].*,unstable,'
+
+# Edges of the domain: an operation, and the place on the orbit.
+scene root 'x = 1' 'H = p_x^2/2 + sqrt(x)' "$run"
+tells 'ends at t = 1.88561808: .*, with sqrt(...)' compare $work/root.nevh
+scene edge 'x = 1' 'H = p_x^2/2 + acos(x)' "$run"
+tells 'x = 1, an edge of the domain of H' run $work/edge.nevh
+scene edge 'x = 0' 'H = p_x^2/2 + sqrt(x)' "$run"
+tells 'x = 0, an edge of the domain of H' run $work/edge.nevh
+
 # The end of a solution is no kink of H.
 exits 0 check $work/fall.nevh
 has '^  smooth  *yes'

@@ -229,6 +229,8 @@ static int compare_rows(const options *o, plan *p, row_list *r) {
     observe_orders(r->row, r->count);
     if (isnan(p->ends) && !p->reference && any_trouble(r))
         p->ends = plan_ends(p);
+    for (size_t i = 0; isfinite(p->ends) && i < r->count; i++)
+        r->row[i].energy.verdict = NEVH_UNDECIDED;
     page result = make_page(o, p, r);
     bool first = plot_goes_first(o);
     int drawn = first ? draw_rows(o, p, r) : TOOL_OK;
