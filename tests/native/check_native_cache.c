@@ -186,6 +186,8 @@ TEST(processes_at_once) {
     }
     find_file(path);
     ck_assert(nevh__cache_is_whole(path));
+    ck_assert_int_eq(chmod(path, 0722), 0); /* others may write to it */
+    ck_assert(!nevh__cache_is_whole(path));
     nevh_scene_free(scene);
     remove_cache();
 }
