@@ -135,7 +135,8 @@ static int fail_at_edge(nevh_work *w, const chain *z, double t) {
     if (edge == SIZE_MAX)
         return NEVH_OK;
     nevh__domain_words(plan->recurrence, edge, why, sizeof why);
-    return nevh_work_fail(w, NEVH_EDOM, "%s ended near t = %.9g: %s",
+    return nevh_work_fail(w, NEVH_EDOM,
+                          "%s ended near t = %.9g: " NEVH__SERIES_EDGE,
                           w->integrator->name, t, why);
 }
 

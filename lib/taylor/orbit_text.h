@@ -123,9 +123,7 @@ static int fail_at_edge(const orbit *o, double t, nevh__report *report) {
                       o->ended
                           ? "the solution itself ends at t = %.9g: it "
                             "changes without bound there, with %s"
-                          : "the series ends near t = %.9g: %s is not "
-                            "analytic there, and a series knows nothing of "
-                            "what follows",
+                          : "the series ends near t = %.9g: " NEVH__SERIES_EDGE,
                       t, why);
 }
 

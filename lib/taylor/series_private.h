@@ -93,6 +93,8 @@ bool nevh__domain_is_closed(const nevh__recurrence *, size_t edge);
 /* The first edge that is a kink of an operation, behind which an orbit goes on;
    SIZE_MAX: there is none. */
 size_t nevh__domain_kink(const nevh__recurrence *);
+#define NEVH__SERIES_EDGE                                                      \
+    "%s is not analytic there, and a series knows nothing of what follows"
 /* "sqrt(...), whose argument reaches 0, in effect "V"" */
 void nevh__domain_words(const nevh__recurrence *, size_t edge, char text[],
                         size_t room);
