@@ -110,6 +110,27 @@ TEST(mirrors_turn_orbits_back) {
     }
 }
 
+/* Two bodies on a spring: their centre is free, a double eigenvalue of 0. */
+static double free_pair(double t, const double q[], const double p[],
+                        const void *x) {
+    (void)t, (void)x;
+    return p[0] * p[0] / 2.6 + p[1] * p[1] / 5.8 + 1.7 * cosh(q[0] - q[1]);
+}
+
+TEST_EACH(rates_of_rounding_are_none, 8) {
+    const double q[] = {0.37 + _i, 0.3 + _i}, p[] = {0.1 * _i, 0.2};
+    double frequency, growth;
+    nevh_options o = {.q = q, .p = p};
+    nevh_system *s = nevh_system_from(2, free_pair, NULL);
+    nevh_rates *r = nevh_rates_new(s, &o);
+    ck_assert_int_eq(nevh_rates_at(r, 0, q, p, &frequency, &growth), NEVH_OK);
+    ck_assert_double_eq_tol(
+        frequency, sqrt(1.7 * cosh(q[0] - q[1]) * (1 / 1.3 + 1 / 2.9)), 1e-6);
+    ck_assert_double_eq(growth, 0);
+    nevh_rates_free(r);
+    nevh_system_free(s);
+}
+
 /* Whatever the units. */
 TEST_EACH(lengths, 2) {
     const double metre = _i ? 1e-10 : 1e11, mass = _i ? 1e-27 : 1e30;

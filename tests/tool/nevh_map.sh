@@ -51,6 +51,10 @@ test "$missing" -gt 2 || fails "has a value everywhere"
 grep -q "12 orbits, $missing without a value (hatched)" $work/gp ||
     fails "does not say what is hatched"
 grep -q "set cblabel \"first(phi > 3.5) (s)\"" $work/gp || fails "has no label"
+# A frequency is an angle per time, whatever it is the frequency of.
+exits 0 sweep pendulum --vary 'phi = range(0.5, 1, 3)' --dt 0.1 --t-end 20 \
+    --outcomes 'frequency(phi)' --picture $work/line.svg --keep-plot-script $work/gp1
+grep -q '"frequency(phi) (rad/s)"' $work/gp1 || fails "has no rad/s"
 # From an array, too.
 exits 0 sweep "$@" --outcomes 'first(phi > 3.5)' -o $work/map.npy
 awk '/^\$map/ { on = 1; next } /^EOD/ { on = 0 } on' $work/gp |
