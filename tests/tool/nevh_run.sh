@@ -62,6 +62,8 @@ exits 0 run pendulum --t-end 1 --dt 0.375 --at 0.625,0.25,0.25,0.375
 at_times 0.25 0.375 0.625
 exits 0 run pendulum --t-end 1 --dt 0.75 --every 1
 at_times 0 0.75 1
+exits 0 run pendulum --t-end 0.1 --dt 0.05 --every 1
+at_times 0 0.05 0.1
 exits 0 run pendulum --t-end 100
 test "$(rows $work/out | wc -l)" -eq 1001 || fails "has other than 1001 rows"
 exits 0 run pendulum --t-end 200
