@@ -72,6 +72,8 @@ libnevh_core_la_SOURCES += \
 	integrators/gauss.c \
 	integrators/lobatto.c \
 	integrators/kernels/tao_private.h \
+	integrators/kernels/parts_scheme_private.h \
+	integrators/kernels/parts_step.h \
 	integrators/kernels/tao_step.h \
 	integrators/kernels/tao_run.c \
 	integrators/kernels/tao_binding.c \

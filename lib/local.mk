@@ -182,6 +182,7 @@ libnevh_core_la_SOURCES = \
 	lib/native/noise_text.c \
 	lib/native/watch_text.c \
 	lib/native/energy_text.c \
+	lib/native/parts_text.c \
 	lib/native/tao_text.c \
 	lib/native/adaptive_verlet_text.c \
 	lib/native/taylor_text.c \
@@ -335,6 +336,8 @@ step_texts = integrators/kernels/splitting_step.h \
 	integrators/kernels/runge_kutta_step.h \
 	integrators/kernels/nystrom_step.h \
 	integrators/kernels/tao_step.h \
+	integrators/kernels/parts_scheme_private.h \
+	integrators/kernels/parts_step.h \
 	integrators/kernels/adaptive_verlet_step.h \
 	lib/work/pace.h \
 	integrators/kernels/adaptive_step.h \
@@ -358,6 +361,7 @@ step_texts = integrators/kernels/splitting_step.h \
 	lib/native/steps/splitting_parts.h \
 	lib/native/steps/splitting_groups.h \
 	lib/native/steps/tao_driver.h \
+	lib/native/steps/parts_driver.h \
 	lib/native/steps/block_driver.h \
 	lib/native/steps/long_driver.h \
 	lib/native/steps/compiled_needs.h \

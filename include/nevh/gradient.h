@@ -179,6 +179,7 @@ typedef struct {
                             solve, or too slowly: simplified Newton took over */
     uint64_t rescues;    /* those that needed GSL's multiroot solver as well */
     double hamiltonians; /* values over the number of enabled instances */
+    uint64_t instances;  /* that number */
 } nevh_counts;
 NEVH_API nevh_counts nevh_field_counts(const nevh_field *);
 /* Evaluations of instances of the terms of one effect; 0 if unknown or off. */

@@ -11,7 +11,8 @@
 
    Variables of a block stand as q, p of one coordinate after the other, so that
    chains have banded matrices: elements below the last digits are left out.
-   A block with -k/|q| has no matrix: kepler_flow.c moves it.
+   A block with -k/|q| has no matrix: kepler_flow.c moves it.  Coordinates that are
+   free, dq/dt = a p, are moved side by side.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "form_flow_private.h"
 #include "gradient/field_private.h"
@@ -30,7 +31,7 @@ typedef struct {
     const size_t *index; /* coordinates of the system */
     nevh__extended *a;   /* m x (m + 1), by rows: dz/dt = a (z, 1) */
     int *units;          /* m: powers of two */
-    size_t at;           /* of its elements in a set */
+    size_t at, column;   /* of its elements, and columns, in a set */
     double k;            /* of -k/|q| */
 } block;
 
@@ -40,11 +41,13 @@ typedef struct {
     bool made;
     double *high, *low;
     size_t *first, *last; /* rows of each column that are not 0 */
+    double *free; /* n_times x 2 x n: D of free coordinates, and rests */
 } set;
 
 struct nevh__form_flow {
     size_t n, n_blocks, n_times, size, columns; /* of a set for one time */
-    block *blocks;
+    size_t n_bound;                             /* blocks that are not free */
+    block *blocks;                              /* these are the first */
     size_t *index;
     nevh__extended *a, *room; /* all a; three matrices of the largest block */
     int *units;
@@ -61,6 +64,7 @@ void nevh__form_flow_free(nevh__form_flow *f) {
         free(f->sets[i].low);
         free(f->sets[i].first);
         free(f->sets[i].last);
+        free(f->sets[i].free);
     }
     free(f->blocks);
     free(f->index);
@@ -176,7 +180,7 @@ static void choose_units(block *b) {
 }
 
 static bool plan_blocks(nevh__form_flow *f, map *x, const forest *trees) {
-    size_t elements = 0, most = 0;
+    size_t elements = 0, columns = 0, most = 0;
     for (size_t k = 0; k < f->n; k++)
         if (root(trees, k) == k)
             x->block[k] = f->n_blocks++;
@@ -193,7 +197,9 @@ static bool plan_blocks(nevh__form_flow *f, map *x, const forest *trees) {
         b->index = index;
         index += b->count;
         b->at = elements;
+        b->column = columns;
         elements += m * (m + 1);
+        columns += m + 1;
         most = m > most ? m : most;
     }
     for (size_t k = 0; k < f->n; k++) {
@@ -201,7 +207,7 @@ static bool plan_blocks(nevh__form_flow *f, map *x, const forest *trees) {
         f->index[(size_t)(b->index - f->index) + x->place[k]] = k;
     }
     f->size = elements;
-    f->columns = 2 * f->n + f->n_blocks;
+    f->columns = columns;
     if (most > 2 * MOST_BLOCK)
         return true;
     f->a = nevh__array(elements, sizeof *f->a);
@@ -223,9 +229,27 @@ static bool plan_sets(nevh__form_flow *f) {
         x->low = nevh__array(size, sizeof *x->low);
         x->first = nevh__array(columns, sizeof *x->first);
         x->last = nevh__array(columns, sizeof *x->last);
-        all = all && x->high && x->low && x->first && x->last;
+        x->free = nevh__array(f->n_times * 2 * f->n, sizeof *x->free);
+        all = all && x->high && x->low && x->first && x->last && x->free;
     }
     return all;
+}
+
+static bool is_free(const block *b) {
+    bool fine = b->count == 1 && b->k == 0;
+    for (size_t i = 0; i < 6; i++)
+        fine = fine && (i == 1 || b->a[i] == 0);
+    return fine;
+}
+
+/* Those that are not free change places with the first. */
+static void part_blocks(nevh__form_flow *f) {
+    for (block *b = f->blocks; b < f->blocks + f->n_blocks; b++)
+        if (!is_free(b)) {
+            block bound = *b, *to = &f->blocks[f->n_bound++];
+            *b = *to;
+            *to = bound;
+        }
 }
 
 static size_t largest_block(const nevh__form_flow *f) {
@@ -249,6 +273,7 @@ static bool plan_flow(nevh__form_flow *f, const nevh_field *field) {
         fine = visit_entries(field, put_entry, &x) && plan_sets(f);
         for (size_t i = 0; fine && i < f->n_blocks; i++)
             choose_units(&f->blocks[i]);
+        part_blocks(f);
     }
     free(trees.up);
     free(x.block);
@@ -363,13 +388,17 @@ void nevh__form_flow_set(nevh__form_flow *f, double h) {
     x->h = h;
     x->made = true;
     for (size_t t = 0; t < f->n_times; t++)
-        for (size_t i = 0, column = t * f->columns; i < f->n_blocks; i++) {
+        for (size_t i = 0; i < f->n_blocks; i++) {
             const block *b = &f->blocks[i];
-            size_t at = t * f->size + b->at;
+            size_t at = t * f->size + b->at,
+                   column = t * f->columns + b->column;
             if (b->k == 0)
                 store(b, exponential(b, f->times[t] * h, f->room), x->high + at,
                       x->low + at, x->first + column, x->last + column);
-            column += 2 * b->count + 1;
+            if (i < f->n_bound)
+                continue;
+            x->free[2 * t * f->n + b->index[0]] = x->high[at + 2];
+            x->free[(2 * t + 1) * f->n + b->index[0]] = x->low[at + 2];
         }
 }
 
@@ -413,15 +442,27 @@ static void add_centre(const block *b, double t, size_t width, const double q[],
     }
 }
 
+/* Numbers of other coordinates are 0. */
+NEVH_SIMD static void add_free(const nevh__form_flow *f, size_t which,
+                               size_t width, const double p[], double dq[]) {
+    const double *high = f->sets[f->now].free + 2 * which * f->n;
+    const double *low = high + f->n;
+    for (size_t k = 0; width == 1 && k < f->n; k++)
+        dq[k] += high[k] * p[k] + low[k] * p[k];
+    for (size_t k = 0; width > 1 && k < f->n; k++)
+        for (size_t i = k * width; i < (k + 1) * width; i++)
+            dq[i] += high[k] * p[i] + low[k] * p[i];
+}
+
 NEVH_SIMD static void add_blocks(const nevh__form_flow *f, size_t which,
                                  size_t width, const double q[],
                                  const double p[], double dq[], double dp[]) {
     const set *x = &f->sets[f->now];
     double high[2 * MOST_BLOCK], low[2 * MOST_BLOCK];
-    for (size_t lane = 0; lane < width; lane++) {
-        size_t column = which * f->columns;
-        for (const block *b = f->blocks; b < f->blocks + f->n_blocks; b++) {
+    for (const block *b = f->blocks; b < f->blocks + f->n_bound; b++)
+        for (size_t lane = 0; lane < width; lane++) {
             size_t at = which * f->size + b->at;
+            size_t column = which * f->columns + b->column;
             if (b->k != 0)
                 add_centre(b, f->times[which] * x->h, width, q + lane, p + lane,
                            dq + lane, dp + lane);
@@ -429,13 +470,13 @@ NEVH_SIMD static void add_blocks(const nevh__form_flow *f, size_t which,
                 add_block(b, x->high + at, x->low + at, x->first + column,
                           x->last + column, width, q + lane, p + lane,
                           dq + lane, dp + lane, high, low);
-            column += 2 * b->count + 1;
         }
-    }
 }
 
 void nevh__form_flow_add(const nevh__form_flow *f, size_t which, size_t width,
                          const double q[], const double p[], double dq[],
                          double dp[]) {
     add_blocks(f, which, width, q, p, dq, dp);
+    if (f->n_bound < f->n_blocks)
+        add_free(f, which, width, p, dq);
 }

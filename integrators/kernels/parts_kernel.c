@@ -1,10 +1,7 @@
-/* nevh: steps by parts, H = A + B: flows of A and kicks of B = V(t, q) in turn.
-
-   Increments are summed from zero over the step and added to the state once, with
-   compensation.  The time of a kick is that of the flows before it.  Where a step
-   begins with a kick it ends with one, whose slope is kept for the next step.
+/* nevh: the kernel of steps by parts.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "form_flow_private.h"
+#include "parts_step.h"
 #include "splitting_private.h"
 #include "work/work_private.h"
 #include <stdlib.h>
@@ -12,43 +9,8 @@
 
 enum { FEW_SUBSTEPS = 8, MOST_SUBSTEPS = 10000 };
 
-/* Kicks of B, of inner terms, flows. */
-typedef enum { OUTER, INNER, FLOW } operation_kind;
-enum { KICKS = FLOW };
-
-typedef struct {
-    double weight, time;
-    operation_kind kind;
-    size_t which; /* the part of a step that a flow takes */
-} operation;
-
-typedef struct {
-    size_t count;
-    operation *operations;
-    nevh__form_flow *flow;
-    size_t kept; /* slopes that the next step begins with */
-} parts_plan;
-
-/* Rows of the scratch. */
-typedef struct {
-    double *dq, *dp, *q, *p, *slope[KICKS], *time;
-} rows;
-
-static rows lay_out(const nevh_work *w) {
-    double *from = w->scratch;
-    rows r;
-    r.dq = nevh__take(&from, w->size);
-    r.dp = nevh__take(&from, w->size);
-    r.q = nevh__take(&from, w->size);
-    r.p = nevh__take(&from, w->size);
-    r.slope[OUTER] = nevh__take(&from, w->size);
-    r.slope[INNER] = nevh__take(&from, w->size);
-    r.time = from;
-    return r;
-}
-
 static void clear(nevh_work *w) {
-    parts_plan *o = w->plan;
+    nevh__parts_scheme *o = w->plan;
     if (!o)
         return;
     nevh__form_flow_free(o->flow);
@@ -58,24 +20,25 @@ static void clear(nevh_work *w) {
 }
 
 /* One of the same kind as the last is part of it. */
-static void add(parts_plan *o, operation_kind kind, double weight) {
-    operation *last = &o->operations[o->count];
+static void add(nevh__parts_scheme *o, nevh__operation kind, double weight) {
+    nevh__part_operation *last = &o->operations[o->count];
     if (o->count && last[-1].kind == kind)
         last[-1].weight += weight;
     else {
-        *last = (operation){.weight = weight, .kind = kind};
+        *last = (nevh__part_operation){.weight = weight, .kind = kind};
         o->count++;
     }
 }
 
 /* Times of kicks; flows over equal parts of the step share their matrices.  Returns
    how many of these there are, the first of `distinct`. */
-static size_t find_flows(parts_plan *o, double distinct[]) {
+static size_t find_flows(nevh__parts_scheme *o, double distinct[]) {
     size_t found = 0;
     double passed = 0;
-    for (operation *x = o->operations; x < o->operations + o->count; x++) {
+    for (nevh__part_operation *x = o->operations; x < o->operations + o->count;
+         x++) {
         x->time = passed;
-        if (x->kind != FLOW)
+        if (x->kind != NEVH__FLOW)
             continue;
         while (x->which < found && distinct[x->which] != x->weight)
             x->which++;
@@ -89,21 +52,23 @@ static size_t find_flows(parts_plan *o, double distinct[]) {
 /* weights: of the table, and room for those of all flows. */
 static int plan_operations(nevh_work *w, size_t substeps, double weights[]) {
     const nevh_splitting *table = w->integrator->table;
-    parts_plan *o = w->plan;
+    nevh__parts_scheme *o = w->plan;
     bool kicks = table->first == NEVH_KICK;
     double parts = (double)substeps;
     size_t count = nevh__splitting_operations(table);
     nevh__splitting_expand(table, weights);
     for (size_t i = 0; i < count; i++, kicks = !kicks) {
         if (kicks || !substeps)
-            add(o, kicks ? OUTER : FLOW, weights[i]);
+            add(o, kicks ? NEVH__OUTER_KICK : NEVH__FLOW, weights[i]);
         for (size_t k = 0; !kicks && k < substeps; k++) {
-            add(o, INNER, weights[i] / (2 * parts));
-            add(o, FLOW, weights[i] / parts);
-            add(o, INNER, weights[i] / (2 * parts));
+            add(o, NEVH__INNER_KICK, weights[i] / (2 * parts));
+            add(o, NEVH__FLOW, weights[i] / parts);
+            add(o, NEVH__INNER_KICK, weights[i] / (2 * parts));
         }
     }
-    o->kept = table->first == NEVH_DRIFT ? 0 : substeps ? KICKS : 1;
+    o->kept = table->first == NEVH_DRIFT ? 0 : substeps ? NEVH__KICKS : 1;
+    o->set = nevh__form_flow_set;
+    o->add = nevh__form_flow_add;
     o->flow = nevh__form_flow_new(w, find_flows(o, weights), weights);
     return o->flow ? NEVH_OK : w->report->status;
 }
@@ -118,7 +83,7 @@ static size_t substeps_of(const nevh_work *w) {
 }
 
 static int plan(nevh_work *w) {
-    parts_plan *o = w->plan = nevh__array(1, sizeof *o);
+    nevh__parts_scheme *o = w->plan = nevh__array(1, sizeof *o);
     size_t substeps = substeps_of(w);
     if (substeps > MOST_SUBSTEPS)
         return nevh_work_fail(w, NEVH_EINVAL,
@@ -136,96 +101,94 @@ static int plan(nevh_work *w) {
     if (status)
         return status;
     w->memory_rows = (2 + o->kept) * w->n + (o->kept > 0);
-    w->scratch_size = (4 + KICKS) * w->size + w->width;
+    w->scratch_size = (4 + NEVH__KICKS) * w->size + w->width;
     return NEVH_OK;
 }
 
-/* The state in the midst of a step. */
-static void place(const nevh_work *w, const rows *r, const double q[],
-                  const double p[]) {
-    const double *rest = w->memory;
-    for (size_t i = 0; i < w->size; i++) {
-        r->q[i] = q[i] + (r->dq[i] + rest[i]);
-        r->p[i] = p[i] + (r->dp[i] + rest[w->size + i]);
-    }
-}
+/* The includer's data of a step. */
+struct nevh__parts_owner {
+    nevh_work *work;
+    double *time; /* a row */
+};
 
 /* Slopes that are kept, and which lanes have them. */
 static double *kept_slopes(const nevh_work *w, size_t which) {
     return w->memory + (2 + which) * w->size;
 }
 
+static int set_time(const nevh__parts_step *x, const nevh__part_operation *o,
+                    double t) {
+    nevh_work *w = x->owner->work;
+    for (size_t lane = 0; lane < w->width; lane++)
+        x->owner->time[lane] = t;
+    if (!w->accounts || o->kind == NEVH__INNER_KICK) /* these read no time */
+        return NEVH_OK;
+    return nevh_work_account(w, o->kind == NEVH__FLOW ? NEVH_OF_P : NEVH_OF_Q,
+                             o->weight * x->h, x->owner->time, x->point[0],
+                             x->point[1]);
+}
+
+NEVH__INLINE int nevh__parts_flow(const nevh__parts_step *x,
+                                  const nevh__part_operation *o, double t) {
+    int status = set_time(x, o, t);
+    if (!status)
+        x->scheme->add(x->scheme->flow, o->which, x->owner->work->width,
+                       x->point[0], x->point[1], x->change[0], x->change[1]);
+    return status;
+}
+
 /* Lanes that start afresh take their first slopes, and others keep theirs: at t + h
    of the step before, which rounds otherwise than t. */
-static int take_slope(nevh_work *w, const rows *r, operation_kind kind,
-                      bool first) {
-    const parts_plan *o = w->plan;
-    const double *has = first ? kept_slopes(w, o->kept) : NULL;
-    double *slope = r->slope[kind];
-    int status = NEVH_OK;
+NEVH__INLINE int nevh__parts_slope(const nevh__parts_step *x, size_t size,
+                                   const nevh__part_operation *o, double t,
+                                   bool first) {
+    nevh_work *w = x->owner->work;
+    const double *has = first ? kept_slopes(w, x->scheme->kept) : NULL;
+    double *slope = x->slope[o->kind], *time = x->owner->time;
+    const nevh__places at = {w->width,    time,  x->point[0],
+                             x->point[1], slope, NULL};
+    int status = set_time(x, o, t);
     bool all = first;
     for (size_t lane = 0; all && lane < w->width; lane++)
         all = has[lane] != 0;
-    if (!all && kind == OUTER)
-        status =
-            nevh_work_gradient(w, w->width, r->time, r->q, r->p, slope, NULL);
-    else if (!all)
-        status = nevh__work_inner_gradient(
-            w, &(nevh__places){w->width, r->time, r->q, r->p, slope, NULL});
-    for (size_t i = 0; !status && first && i < w->size; i++)
+    if (!status && !all)
+        status = o->kind == NEVH__OUTER_KICK
+                     ? nevh__work_gradient_padded(w, w->width, &at)
+                     : nevh__work_inner_gradient(w, &at);
+    for (size_t i = 0; !status && first && i < size; i++)
         if (has[i % w->width] != 0)
-            slope[i] = kept_slopes(w, kind)[i];
+            slope[i] = kept_slopes(w, o->kind)[i];
     return status;
 }
 
-/* first: of its kind at the beginning of a step that keeps slopes. */
-static int operate(nevh_work *w, const rows *r, const operation *x, bool first,
-                   double t, double h) {
-    const parts_plan *o = w->plan;
-    double weight = x->weight * h;
-    int status = NEVH_OK;
-    for (size_t lane = 0; lane < w->width; lane++)
-        r->time[lane] = t + x->time * h;
-    if (w->accounts && x->kind != INNER) /* these read no time */
-        status = nevh_work_account(w, x->kind == FLOW ? NEVH_OF_P : NEVH_OF_Q,
-                                   weight, r->time, r->q, r->p);
-    if (status)
-        return status;
-    if (x->kind == FLOW) {
-        nevh__form_flow_add(o->flow, x->which, w->width, r->q, r->p, r->dq,
-                            r->dp);
-        return NEVH_OK;
-    }
-    status = take_slope(w, r, x->kind, first);
-    for (size_t i = 0; i < w->size; i++)
-        r->dp[i] -= weight * r->slope[x->kind][i];
-    return status;
-}
-
-static void keep_slopes(nevh_work *w, const rows *r) {
-    const parts_plan *o = w->plan;
-    for (size_t i = 0; i < o->kept; i++)
-        memcpy(kept_slopes(w, i), r->slope[i], w->size * sizeof(double));
-    for (size_t lane = 0; o->kept && lane < w->width; lane++)
-        kept_slopes(w, o->kept)[lane] = 1;
+static void keep_slopes(nevh_work *w, const nevh__parts_step *x) {
+    size_t kept = x->scheme->kept;
+    for (size_t i = 0; i < kept; i++)
+        memcpy(kept_slopes(w, i), x->slope[i], w->size * sizeof(double));
+    for (size_t lane = 0; kept && lane < w->width; lane++)
+        kept_slopes(w, kept)[lane] = 1;
 }
 
 static int step(nevh_work *w, double t, double h, double q[], double p[]) {
-    const parts_plan *o = w->plan;
-    rows r = lay_out(w);
-    int status = NEVH_OK;
-    nevh__form_flow_set(o->flow, h);
-    for (size_t i = 0; i < w->size; i++)
-        r.dq[i] = r.dp[i] = 0;
-    for (size_t i = 0; !status && i < o->count; i++) {
-        place(w, &r, q, p);
-        status = operate(w, &r, &o->operations[i], i < o->kept, t, h);
+    double *row = w->scratch, *lost = w->memory;
+    nevh__parts_step x = {.scheme = w->plan,
+                          .t = t,
+                          .h = h,
+                          .state = {q, p},
+                          .lost = {lost, lost + w->size}};
+    for (int i = 0; i < 2; i++) {
+        x.change[i] = nevh__take(&row, w->size);
+        x.point[i] = nevh__take(&row, w->size);
+        x.slope[i] = nevh__take(&row, w->size);
     }
+    const struct nevh__parts_owner owner = {w, row};
+    x.owner = &owner;
+    int status = nevh__parts_take(&x, w->size);
     if (!status)
-        status = nevh_work_commit(w, w->size, q, r.dq, w->memory, p, r.dp,
-                                  w->memory + w->size);
+        status = nevh_work_commit(w, w->size, q, x.change[0], lost, p,
+                                  x.change[1], lost + w->size);
     if (!status)
-        keep_slopes(w, &r);
+        keep_slopes(w, &x);
     return status;
 }
 

@@ -30,18 +30,19 @@ static double side_by_side(const nevh_integrator *scheme) {
     return stages > 1 ? cheapest + (1 - cheapest) / stages : 1;
 }
 
-/* Gradients and values of formulas; an implicit step that Newton solves factors
-   a matrix as well. */
+/* Gradients and values of formulas, of which there may be many, as of pairs; an
+   implicit step that Newton solves factors a matrix as well. */
 double nevh_counts_seconds(const nevh_counts *c, size_t dof,
                            const nevh_integrator *scheme, int order,
                            size_t steps) {
     static const double an_order = 0.2; /* of a series, over a gradient */
-    double n = (double)dof, m = 2 * n;
-    double gradient = c->hamiltonians > 0 ? 100 : 250 + 40 * n;
+    static const double a_term = 2;
+    double n = (double)dof, m = 2 * n, terms = a_term * (double)c->instances;
+    double gradient = c->hamiltonians > 0 ? 100 : fmax(250 + 40 * n, terms);
     if (nevh_integrator_needs_formulas(scheme))
         gradient *= an_order * order;
-    double evaluations =
-        gradient * (double)c->gradients + (100 + 40 * n) * c->hamiltonians;
+    double evaluations = gradient * (double)c->gradients +
+                         fmax(100 + 40 * n, terms) * c->hamiltonians;
     return 1e-9 *
            (side_by_side(scheme) * evaluations + (50 + 10 * n) * (double)steps +
             m * m * m / 2 * (double)c->newtons);

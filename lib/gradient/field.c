@@ -70,7 +70,8 @@ nevh_counts nevh_field_counts(const nevh_field *f) {
     if (!f)
         return (nevh_counts){0};
     uint64_t inner = f->instances ? f->inner / f->instances : 0;
-    nevh_counts counts = {.gradients = f->gradients + inner};
+    nevh_counts counts = {.gradients = f->gradients + inner,
+                          .instances = f->instances};
     for (size_t i = 0; i < f->n_terms; i++)
         counts.values += f->terms[i].values;
     if (f->instances)

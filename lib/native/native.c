@@ -1,6 +1,8 @@
 /* nevh: native steps are planned and taken.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "kernels/adaptive_verlet_private.h"
+#include "kernels/form_flow_private.h"
+#include "kernels/parts_scheme_private.h"
 #include "kernels/runge_kutta_private.h"
 #include "kernels/splitting_private.h"
 #include "kernels/tableau_private.h"
@@ -108,6 +110,21 @@ static bool fill_adaptive_verlet(nevh__native *x, const nevh_work *w) {
     return x->times;
 }
 
+/* The first slope of each kind is kept; drifts are inner kicks. */
+static bool fill_parts(nevh__native *x, const nevh_work *w) {
+    const nevh__parts_scheme *scheme = w->plan;
+    x->keeps = x->whole = scheme->kept > 0;
+    x->flags_at = 2 + scheme->kept;
+    for (size_t i = 0; i < scheme->count; i++) {
+        x->kicks += scheme->operations[i].kind == NEVH__OUTER_KICK;
+        x->drifts += scheme->operations[i].kind == NEVH__INNER_KICK;
+    }
+    w->field->parts = 1u << NEVH__INNER;
+    nevh__slope_values(w->field, true, x->drift_values);
+    w->field->parts = 1u << NEVH__KICK;
+    return true;
+}
+
 /* Kicks and drifts of one stage. */
 static bool fill_stages(nevh__native *x, const nevh_work *w) {
     x->stages = (size_t)w->integrator->stages;
@@ -136,6 +153,8 @@ static const struct {
     {&nevh__implicit_kernel, nevh__write_stages, fill_stages, false, true,
      false},
     {&nevh__tao_kernel, nevh__write_tao, fill_tao, false, false, false},
+    {&nevh__parts_kernel, nevh__write_parts, fill_parts, true, false, true},
+    {&nevh__substeps_kernel, nevh__write_parts, fill_parts, true, false, true},
     {&nevh__adaptive_verlet_kernel, nevh__write_adaptive_verlet,
      fill_adaptive_verlet, false, false, false},
     {&nevh__taylor_kernel, nevh__write_series, NULL, false, false, false}};

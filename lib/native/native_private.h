@@ -27,8 +27,8 @@ enum { NEVH__WHY_NATIVE = 400 };
 /* Why there are none: "no native steps: ..." or "no program of such steps: ...".
  */
 #define NEVH__ONLY_FAMILIES                                                    \
-    "only splitting, Tao, Runge-Kutta, Nystroem, Gauss, Lobatto and adaptive " \
-    "Verlet steps can be"
+    "only splitting, Tao, Runge-Kutta, Nystroem, Gauss, Lobatto, adaptive "    \
+    "Verlet steps and steps by parts can be"
 
 typedef struct nevh__native {
     void *library;
@@ -62,6 +62,7 @@ bool nevh__write_runge_kutta(nevh__writer *, nevh_work *);
 bool nevh__write_nystrom(nevh__writer *, nevh_work *);
 bool nevh__write_stages(nevh__writer *, nevh_work *);
 bool nevh__write_tao(nevh__writer *, nevh_work *);
+bool nevh__write_parts(nevh__writer *, nevh_work *);
 /* Steps that choose their length, one at a time: it is left in `times`. */
 bool nevh__write_adaptive_verlet(nevh__writer *, nevh_work *);
 /* Text of steps under a rule, after that of two functions of one orbit,

@@ -26,7 +26,7 @@ static size_t points_of(const nevh_field *f, const nevh__planned *term,
 
 void nevh__slope_values(const nevh_field *f, bool kick, uint64_t values[]) {
     for (size_t i = 0; i < f->n_terms; i++)
-        values[i] += nevh__is_wanted(&f->terms[i], kick)
+        values[i] += nevh__is_wanted(f, &f->terms[i], kick)
                          ? points_of(f, &f->terms[i], kick)
                          : 0;
 }
@@ -39,7 +39,7 @@ static double half_operations(nevh__writer *w, const nevh_field *f, bool kick) {
     for (size_t i = 0; i < f->n_terms; i++) {
         const nevh__planned *term = &f->terms[i];
         const nevh_term *is = &term->term->decl;
-        if (!nevh__is_wanted(term, kick))
+        if (!nevh__is_wanted(f, term, kick))
             continue;
         if (!nevh__is_tape(is)) {
             w->refusal = "a term is no formula";

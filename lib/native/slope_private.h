@@ -87,9 +87,10 @@ void nevh__write_row(const nevh__term_loop *, size_t k, const char *name);
 /* Columns of differences' steps where instances have their own, for readers. */
 void nevh__write_steps(const nevh__term_loop *);
 
-/* True if a term has a part in a half. */
-static inline bool nevh__is_wanted(const nevh__planned *term, bool kick) {
-    return kick ? term->nq : term->np;
+/* True if a term has a part in a half of the gradient. */
+static inline bool nevh__is_wanted(const nevh_field *f,
+                                   const nevh__planned *term, bool kick) {
+    return f->parts >> term->part & 1 && (kick ? term->nq : term->np);
 }
 /* True if points of differences stand in a vector's lanes. */
 static inline bool nevh__side_by_side(const nevh__writer *w,

@@ -467,7 +467,7 @@ static bool write_slope(nevh__writer *w, nevh_field *f, bool kick,
     write_head(w, f, kick, name);
     for (size_t i = 0; fine && i < f->n_terms; i++) {
         s.of.term = &f->terms[i];
-        if (nevh__is_wanted(s.of.term, kick))
+        if (nevh__is_wanted(f, s.of.term, kick))
             fine = slope_text_write_term(&s);
     }
     if (!w->loops)
@@ -482,10 +482,15 @@ static bool write_slope(nevh__writer *w, nevh_field *f, bool kick,
 }
 
 bool nevh__write_slopes(nevh__writer *w, nevh_field *f, size_t calls) {
-    if (!nevh__slopes_fit(w, f, calls))
-        return false;
-    if (w->loops && !w->readable)
+    unsigned parts = f->parts, inner = 1u << NEVH__INNER;
+    f->parts |= inner;
+    bool fine = nevh__slopes_fit(w, f, calls);
+    if (fine && w->loops && !w->readable)
         nevh__write_lines(w, nevh__loop_needs_text);
-    return write_slope(w, f, true, "kick_slope") &&
+    f->parts = inner;
+    if (fine && parts != NEVH__ALL_PARTS)
+        fine = write_slope(w, f, true, "inner_slope");
+    f->parts = parts;
+    return fine && write_slope(w, f, true, "kick_slope") &&
            write_slope(w, f, false, "drift_slope");
 }

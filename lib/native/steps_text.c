@@ -161,7 +161,7 @@ static void write_long_driver(nevh__writer *w, size_t rows) {
     if (w->takes_steps)
         nevh__write_form(w, "NEVH__TAKES_STEPS");
     nevh__write(w, "enum { ROWS_BEFORE = %zu };\n", rows);
-    w->rows = rows + 5;
+    w->rows = rows + 6; /* the state, what it lost, up to two slopes kept */
     nevh__write_lines(w, nevh__long_driver_text);
 }
 

@@ -7,10 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Gradients, and values of their terms. */
+/* Gradients, and values of their terms; of steps by parts drifts are inner kicks. */
 static void add_counts(nevh_work *w, const nevh__native *x, size_t kicks,
                        size_t drifts) {
     w->field->gradients += kicks;
+    w->field->inner += drifts * w->field->n_inner;
     for (size_t i = 0; i < w->field->n_terms; i++)
         w->field->terms[i].values +=
             kicks * x->kick_values[i] + drifts * x->drift_values[i];
@@ -44,6 +45,7 @@ static size_t take_take(const nevh_work *w, nevh__steps_call *c) {
     c->times = x->times;
     c->operations = x->kicks + x->drifts;
     c->memory = w->memory;
+    c->plan = w->plan;
     if (x->room)
         c->room = nevh__aligned(x->room);
     return compiled(c);
@@ -95,7 +97,7 @@ typedef struct {
     double *numbers; /* q, p and memory */
     size_t memory;   /* doubles */
     uint64_t *values;
-    uint64_t gradients, sweeps, newtons, rescues;
+    uint64_t gradients, inner, sweeps, newtons, rescues;
     double elapsed;
 } before;
 
@@ -121,6 +123,7 @@ static void take_keep(before *b, const nevh_work *w, const double q[],
     for (size_t i = 0; i < w->field->n_terms; i++)
         b->values[i] = w->field->terms[i].values;
     b->gradients = w->field->gradients;
+    b->inner = w->field->inner;
     b->sweeps = w->sweeps;
     b->newtons = w->newtons;
     b->rescues = w->rescues;
@@ -135,6 +138,7 @@ static void give_back(const before *b, nevh_work *w, double q[], double p[]) {
     for (size_t i = 0; i < w->field->n_terms; i++)
         w->field->terms[i].values = b->values[i];
     w->field->gradients = b->gradients;
+    w->field->inner = b->inner;
     w->sweeps = b->sweeps;
     w->newtons = b->newtons;
     w->rescues = b->rescues;

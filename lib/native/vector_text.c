@@ -120,7 +120,7 @@ bool nevh__vectors_init(nevh__vectors *v, nevh__writer *w, nevh_field *f,
     w->failed |= !v->special;
     for (size_t i = 0; fine && i < f->n_terms; i++) {
         nevh__slope_text s = {w, f, &f->terms[i], kick};
-        if (nevh__is_wanted(s.term, kick))
+        if (nevh__is_wanted(f, s.term, kick))
             fine = mark_all(v, &s);
     }
     for (size_t i = 0; fine && i < v->count; i++)
@@ -267,7 +267,7 @@ static bool write_function(nevh__writer *w, nevh_field *f, nevh__vectors *v,
     nevh__write_filled(w, function_begins, (const char *const[]){name});
     for (size_t i = 0; fine && i < f->n_terms; i++) {
         nevh__slope_text s = {w, f, &f->terms[i], v->kick};
-        if (nevh__is_wanted(s.term, s.kick) && nevh__is_loop(s.term))
+        if (nevh__is_wanted(f, s.term, s.kick) && nevh__is_loop(s.term))
             fine = vector_text_write_term(&s, v);
     }
     return fine;

@@ -122,6 +122,8 @@ extern const char *const nevh__stage_sums_text[];
 extern const char *const nevh__runge_kutta_step_text[];
 extern const char *const nevh__nystrom_step_text[];
 extern const char *const nevh__tao_step_text[];
+extern const char *const nevh__parts_scheme_text[];
+extern const char *const nevh__parts_step_text[];
 extern const char *const nevh__adaptive_verlet_step_text[];
 extern const char *const nevh__pace_text[];
 extern const char *const nevh__adaptive_step_text[];
@@ -131,6 +133,7 @@ extern const char *const nevh__implicit_driver_text[];
 extern const char *const nevh__implicit_orbit_text[];
 extern const char *const nevh__implicit_lanes_text[];
 extern const char *const nevh__tao_driver_text[];
+extern const char *const nevh__parts_driver_text[];
 extern const char *const nevh__steps_call_text[];
 extern const char *const nevh__entry_text[];
 extern const char *const nevh__runge_kutta_driver_text[];
@@ -229,7 +232,8 @@ void nevh__write_entry(nevh__writer *);
    that write dH/dq and dH/dp, n numbers, and return something that is 0 if all is
    well.  They are called so many times in the text.  Loops have two arguments
    more, the first slope that is wanted and the one after the last: multiples of
-   8. */
+   8.  Of a field that is divided they are of what kicks, and there is inner_slope, of
+   inner terms. */
 #define NEVH__ALL_SLOPES ", 0, 8 * DOF"
 bool nevh__write_slopes(nevh__writer *, nevh_field *, size_t calls);
 /* True if terms have so many instances that they are loops. */

@@ -101,7 +101,7 @@ class _JudgedRun(c.Structure):
 class _Counts(c.Structure):
     _fields_ = [(name, c.c_uint64) for name in
                 "values gradients sweeps newtons rescues".split()] + [
-                    ("hamiltonians", c.c_double)]
+                    ("hamiltonians", c.c_double), ("instances", c.c_uint64)]
 
 
 class _Separability(c.Structure):

@@ -62,6 +62,15 @@ static const char fluid[] =
     "[effects]\nkinetic = sum(i = 1..N, (p_x[i]^2 + p_y[i]^2 + p_z[i]^2)/2)\n"
     "attraction = sum(i = 1..N, j = i+1..N, -1/((y[j] - y[i])^2 + (x[i] - "
     "x[j])^2 + (z[i] - z[j])^2)^3)\n";
+/* Bonds that kick in substeps, charges outside. */
+static const char bonded[] =
+    "[parameters]\nN = %d\n"
+    "[coordinates]\nx[i = 1..N] = 1.02*i\ny[i = 1..N] = 0.3*sin(0.7*i)\n"
+    "[effects]\nkinetic = sum(i = 1..N, (p_x[i]^2 + p_y[i]^2)/2)\n"
+    "bonds = sum(i = 1..N-1, 50*(sqrt((x[i+1] - x[i])^2 + (y[i+1] - "
+    "y[i])^2) - 1)^2)\n"
+    "charges = sum(i = 1..N, j = i+1..N, 1/sqrt((x[i] - x[j])^2 + (y[i] - "
+    "y[j])^2))\n[parts]\nfast = kinetic, bonds\n";
 /* Every other mass, and three in a row. */
 static const char apart[] =
     "[parameters]\nN = %d\n"
@@ -193,6 +202,19 @@ TEST_EACH(groups_same_bits, 12) {
     nevh_scene *scene = counted(chains[_i % 3].text, chains[_i % 3].count);
     assert_same(scene, schemes[_i % 4], nevh_exact, _i % 2);
     assert_same(scene, schemes[_i % 4], nevh_central4, false);
+    nevh_scene_free(scene);
+}
+
+TEST_EACH(substeps_same_bits, 4) {
+    static const int counts[] = {9, 30, 75, 20};
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    nevh_scene *scene = counted(bonded, counts[_i]);
+    assert_same(scene, nevh_respa, _i == 3 ? nevh_central4 : nevh_exact,
+                _i == 1);
+    nevh_scene_free(scene);
+    scene = counted(driven, 20 + 10 * _i);
+    assert_same(scene, nevh_aba84, _i == 3 ? nevh_central2 : nevh_exact, false);
     nevh_scene_free(scene);
 }
 

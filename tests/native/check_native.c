@@ -4,6 +4,7 @@
 #define _GNU_SOURCE
 #include "../support/native.h"
 #include "kernels/adaptive_verlet_private.h"
+#include "kernels/form_flow_private.h"
 #include "kernels/tao_private.h"
 #include "native/native_private.h"
 #include <dlfcn.h>
@@ -21,6 +22,8 @@ static bool compiles(const nevh_integrator *scheme) {
            scheme->kernel == &nevh_runge_kutta_kernel ||
            scheme->kernel == &nevh_nystrom_kernel ||
            scheme->kernel == &nevh__tao_kernel ||
+           scheme->kernel == &nevh__parts_kernel ||
+           scheme->kernel == &nevh__substeps_kernel ||
            scheme->kernel == &nevh__adaptive_verlet_kernel;
 }
 
@@ -93,6 +96,38 @@ TEST_EACH(same_bits_of_lanes, WAYS) {
     share_cache();
     for (size_t i = 0; i < SCENES; i++)
         assert_scene(i, _i, i % 2 ? 8 : 32, (i + (size_t)_i) % 4);
+}
+
+/* Of three kinds of flows, with kicks in between, and as they are planned alone and
+   side by side.  _i: substeps; of 0 nothing is inner. */
+TEST_EACH(parts_same_bits, 12) {
+    static const size_t widths[] = {1, 8, 32};
+    static const char text[] =
+        "[coordinates]\nx = 0.9\ny = 0.4\nz = 0.1\nr = 1.2\ns = 0.2\np_x = "
+        "0.3\np_z = 0.2\np_s = 0.8\n"
+        "[effects]\nkinetic = (p_x^2 + p_y^2/3 + p_z^2 + p_r^2 + p_s^2)/2\n"
+        "spring = 2*(x - y)^2 + 0.1*x\ncentre = -1/sqrt(r^2 + s^2)\n"
+        "bond = 20*(hypot(x, z) - 1)^2\n"
+        "slow = 0.1*x^4 + 0.2*cos(t + y)*r + z^2*s\n"
+        "[parts]\nfast = kinetic, spring%s\n";
+    char all[sizeof text + 20];
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    share_cache();
+    snprintf(all, sizeof all, text, _i % 2 ? ", bond" : ", centre");
+    nevh_scene *scene = parsed(all);
+    const nevh_integrator *schemes[] = {nevh_wisdom_holman, nevh_aba864};
+    pair x = pair_of(scene, _i % 2 ? nevh_respa : schemes[_i / 2 % 2],
+                     _i < 6 ? nevh_exact : nevh_central4, _i % 4 == 0, cache,
+                     widths[_i % 3]);
+    ck_assert_msg(nevh_stepper_native(x.native, NULL), "%s", x.why);
+    for (int i = 0; i < 3; i++) {
+        ck_assert_int_eq(pair_run(&x, i == 1 ? -0.02 : 0.03, i ? 7 : 90),
+                         NEVH_OK);
+        ck_assert(pair_same(&x));
+    }
+    pair_free(&x);
+    nevh_scene_free(scene);
 }
 
 /* Each function that formulas know, in V and, of time, where that is read. */

@@ -43,8 +43,9 @@ TEST(others_are_not) {
     make_cache();
     pair x = pair_new(scene, nevh_gonzalez, nevh_exact, false, cache);
     ck_assert(!nevh_stepper_native(x.native, NULL));
-    assert_says(x.why, "only splitting, Tao, Runge-Kutta, Nystroem, Gauss, "
-                       "Lobatto and adaptive Verlet steps can be");
+    assert_says(x.why,
+                "only splitting, Tao, Runge-Kutta, Nystroem, Gauss, "
+                "Lobatto, adaptive Verlet steps and steps by parts can be");
     pair_free(&x);
     x = pair_new(special, nevh_verlet, nevh_exact, false, cache);
     ck_assert(!nevh_stepper_native(x.native, NULL));

@@ -2,7 +2,8 @@
    scene.  HEADER: its name; FAMILY_*: whose.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #if defined FAMILY_FORMULAS || defined FAMILY_SPLITTING ||                     \
-    defined FAMILY_RUNGE_KUTTA || defined FAMILY_NYSTROM
+    defined FAMILY_RUNGE_KUTTA || defined FAMILY_NYSTROM ||                    \
+    defined FAMILY_PARTS
 #define STANDS_ALONE
 #endif
 #if (defined FAMILY_DRIVER || defined STANDS_ALONE) &&                         \
@@ -156,6 +157,10 @@ drift_slope(NEVH__COMPILED(const double *N, ) slope_number t,
 #endif
 SLOPE_OF(kick_slope, q)
 SLOPE_OF(drift_slope, p)
+#ifdef FAMILY_PARTS
+enum { KEPT_ROWS = 2 };
+SLOPE_OF(inner_slope, q)
+#endif
 #endif
 
 #ifdef FAMILY_SPLITTING
@@ -299,7 +304,7 @@ static size_t advance(double t0, double h, size_t from, size_t steps, double *q,
 
 #include HEADER
 #if defined STANDS_ALONE && !defined NEVH__ADAPTS && !defined FAMILY_FORMULAS
-#ifndef FAMILY_SPLITTING
+#if !defined FAMILY_SPLITTING && !defined FAMILY_PARTS
 enum { KEPT = DOF };
 #define take_first(c, N, y, lost, kept, room) ((nevh__number){0})
 #endif

@@ -47,6 +47,9 @@ for compiler in "$cc" clang; do
         "-DNEVH__FOR_READERS -DNEVH__KEEPS -DNEVH__LOOPS"; do
         compiles $compiler SPLITTING native/steps/splitting_whole.h -DNEVH__FINITE $forms
     done
+    for forms in '' "$wide" "$wide -DNEVH__LOOPS"; do
+        compiles $compiler PARTS native/steps/parts_driver.h $forms
+    done
     for forms in '' -DNEVH__FOR_READERS -DNEVH__ADAPTS \
         '-DNEVH__ADAPTS -DNEVH__FOR_READERS'; do
         compiles $compiler NYSTROM native/steps/nystrom_driver.h -DNEVH__SUMS $forms

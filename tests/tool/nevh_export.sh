@@ -121,7 +121,9 @@ END
         fails 'writes functions that do not work'
 fi
 exits 2 export pendulum --integrators gonzalez
-says 'no program of such steps: only splitting, Tao, Runge-Kutta, Nystroem, Gauss, Lobatto and adaptive Verlet steps can be'
+says 'no program of such steps: only splitting, Tao, Runge-Kutta, Nystroem, Gauss, Lobatto, adaptive Verlet steps and steps by parts can be'
+exits 2 export charged-chain --integrators respa
+says 'no program of such steps: flows of parts are functions of the library'
 exits 2 export damped-driven-pendulum --integrators midpoint
 says 'no program of such steps: friction is put around its steps'
 exits 2 export no-such-scene

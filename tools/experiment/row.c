@@ -35,15 +35,13 @@ static void unstable_since(const plan *p, row *r) {
     row_stepper_keep(p, r, p->balance, s);
 }
 
-/* Values over instances, of which there is a whole number. */
 nevh_counts row_counts(const nevh_stepper *s, nevh_counts before) {
     nevh_counts c = nevh_stepper_counts(s);
-    double instances = round((double)c.values / c.hamiltonians);
     c.values -= before.values, c.gradients -= before.gradients;
     c.sweeps -= before.sweeps;
     c.newtons -= before.newtons, c.rescues -= before.rescues;
     if (c.hamiltonians > 0)
-        c.hamiltonians = (double)c.values / instances;
+        c.hamiltonians = (double)c.values / (double)c.instances;
     return c;
 }
 

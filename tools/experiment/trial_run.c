@@ -231,14 +231,6 @@ static double cost_of_gradient(const trial *f) {
     return f->instances + a_piece * fmax(0, pieces - few);
 }
 
-static double count_instances(const trial *f) {
-    const plan *p = f->plan;
-    double t = p->run->t_start, h;
-    if (nevh_field_value(f->field, 1, &t, p->q, p->p, &h))
-        return 1;
-    return (double)nevh_field_counts(f->field).values;
-}
-
 trial_run trial_run_new(const plan *p, bool chaos) {
     trial_run found = {.edge = INFINITY};
     nevh_options given = plan_options(p, p->gradients.item[0]);
@@ -252,7 +244,7 @@ trial_run trial_run_new(const plan *p, bool chaos) {
     f.field = plan_values(p);
     f.gradient = nevh_field_new(p->system, &given);
     f.scale = plan_energy_scale(p);
-    f.instances = count_instances(&f);
+    f.instances = (double)nevh_field_counts(f.field).instances;
     f.slope = cost_of_gradient(&f);
     if (take_lengths(&f, &o)) {
         o.scale = f.length;

@@ -71,11 +71,14 @@ static double share_below(double x) {
 double plan_shorten(plan *p, double budget) {
     enum { RUNS = 8 }; /* of the kind that is measured, an integrator */
     double whole = p->t_end, span = whole - p->run->t_start;
-    nevh_counts step = {.gradients = 1};
+    nevh_field *field = plan_values(p);
+    nevh_counts step = {.gradients = 1,
+                        .instances = nevh_field_counts(field).instances};
     double runs = (double)(RUNS * p->integrators.count);
     double share = budget / 6 /
                    (runs * nevh_counts_seconds(&step, p->n, nevh_verlet, 2, 1) *
                     span / plan_shortest_dt(p));
+    nevh_field_free(field);
     if (share < 1)
         p->t_end = p->run->t_start + share_below(share) * span;
     return whole;

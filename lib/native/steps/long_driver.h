@@ -31,15 +31,16 @@ size_t nevh_native_steps(const nevh__steps_call *call) {
     nevh__number *y = room + ROWS_BEFORE * (size_t)DOF;
     nevh__number *lost = room + (ROWS_BEFORE + 2) * (size_t)DOF;
     nevh__number *kept = room + (ROWS_BEFORE + 4) * (size_t)DOF;
-    double *M = c.memory, *flags = M + (2 + (KEPT > 0)) * COUNT;
+    double *M = c.memory, *flags = M + (2 + KEPT / DOF) * COUNT;
     size_t done = 0;
     load_all((double *)y, c.q);
     load_all((double *)(y + DOF), c.p);
     load_all((double *)lost, M);
     load_all((double *)(lost + DOF), M + COUNT);
-    if (KEPT > 0 && *flags != 0)
-        load_all((double *)kept, M + 2 * COUNT);
-    else if (is_bad(take_first(&c, c.numbers, y, lost, kept, room)))
+    for (int i = 0; i < KEPT / DOF && *flags != 0; i++)
+        load_all((double *)(kept + i * DOF), M + (2 + i) * COUNT);
+    if (KEPT > 0 && *flags == 0 &&
+        is_bad(take_first(&c, c.numbers, y, lost, kept, room)))
         return 0;
     while (done < c.steps)
         if (!take_steps(&c, y, lost, kept, room, &done))
@@ -48,10 +49,10 @@ size_t nevh_native_steps(const nevh__steps_call *call) {
     store_all(c.p, (double *)(y + DOF));
     store_all(M, (double *)lost);
     store_all(M + COUNT, (double *)(lost + DOF));
-    if (KEPT) {
-        store_all(M + 2 * COUNT, (double *)kept);
+    for (int i = 0; i < KEPT / DOF; i++)
+        store_all(M + (2 + i) * COUNT, (double *)(kept + i * DOF));
+    if (KEPT)
         *flags = 1;
-    }
     return done;
 }
 

@@ -9,6 +9,7 @@
             sweeps of each orbit, how often noise was asked for, and sweeps evaluated,
             also of orbits that are done; of those that adapt slopes at states, and
             trials
+   plan     of the scheme: of steps by parts a nevh__parts_scheme
    room     of rows, where a state is long; else where to write what is watched after
             each step, or NULL
    SPDX-License-Identifier: GPL-3.0-or-later */
@@ -25,6 +26,7 @@ typedef struct {
     size_t from, steps;
     double *q, *p, *memory;
     size_t *counted;
+    const void *plan;
     double *room;
 } nevh__steps_call;
 

@@ -1,0 +1,30 @@
+/* nevh: the operations of a step by parts, in the order in which they are done; for
+   compiled steps, too.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_PARTS_SCHEME_PRIVATE_H
+#define NEVH_PARTS_SCHEME_PRIVATE_H
+
+#include <stddef.h>
+
+/* Kicks of B, of inner terms, flows. */
+typedef enum { NEVH__OUTER_KICK, NEVH__INNER_KICK, NEVH__FLOW } nevh__operation;
+enum { NEVH__KICKS = NEVH__FLOW };
+
+typedef struct {
+    double weight, time; /* parts of a step */
+    nevh__operation kind;
+    size_t which; /* the part of a step that a flow takes */
+} nevh__part_operation;
+
+typedef struct {
+    size_t count;
+    nevh__part_operation *operations;
+    size_t kept; /* slopes that the next step begins with */
+    struct nevh__form_flow *flow;
+    /* nevh__form_flow_set and _add */
+    void (*set)(struct nevh__form_flow *, double h);
+    void (*add)(const struct nevh__form_flow *, size_t which, size_t width,
+                const double q[], const double p[], double dq[], double dp[]);
+} nevh__parts_scheme;
+
+#endif
