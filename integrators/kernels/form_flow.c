@@ -242,7 +242,7 @@ static bool is_free(const block *b) {
     return fine;
 }
 
-/* Those that are not free change places with the first. */
+/* Blocks that are not free change places with the first. */
 static void part_blocks(nevh__form_flow *f) {
     for (block *b = f->blocks; b < f->blocks + f->n_blocks; b++)
         if (!is_free(b)) {

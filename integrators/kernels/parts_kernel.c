@@ -20,7 +20,7 @@ static void clear(nevh_work *w) {
 }
 
 /* One of the same kind as the last is part of it. */
-static void add(nevh__parts_scheme *o, nevh__operation kind, double weight) {
+static void add(nevh__parts_scheme *o, nevh__part_kind kind, double weight) {
     nevh__part_operation *last = &o->operations[o->count];
     if (o->count && last[-1].kind == kind)
         last[-1].weight += weight;

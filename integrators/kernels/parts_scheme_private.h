@@ -7,12 +7,12 @@
 #include <stddef.h>
 
 /* Kicks of B, of inner terms, flows. */
-typedef enum { NEVH__OUTER_KICK, NEVH__INNER_KICK, NEVH__FLOW } nevh__operation;
+typedef enum { NEVH__OUTER_KICK, NEVH__INNER_KICK, NEVH__FLOW } nevh__part_kind;
 enum { NEVH__KICKS = NEVH__FLOW };
 
 typedef struct {
     double weight, time; /* parts of a step */
-    nevh__operation kind;
+    nevh__part_kind kind;
     size_t which; /* the part of a step that a flow takes */
 } nevh__part_operation;
 

@@ -230,11 +230,20 @@ static double reference_series_compare(nevh_reference *r, chain *c) {
     return most;
 }
 
+/* So many series tell how many there will be. */
+enum { FEW = 16 };
+
+static int cost_too_much(nevh_reference *r, const chain *c) {
+    return nevh__fail(
+        &r->report, NEVH_EFAILED,
+        "Taylor series cost too much for a reference until t = %.9g", c->until);
+}
+
 /* True if both can be continued to the end. */
 static bool affordable(const nevh_reference *r, const chain *c) {
     double part = (double)(c->fine.t - r->t0) / (c->until - r->t0);
     double series = (double)c->count / fmax(part, 1e-300);
-    if (c->count < 16)
+    if (c->count < FEW)
         return true;
     if (c->foreseen > 0)
         series = fmax(c->foreseen, (double)c->count);
@@ -273,10 +282,7 @@ static int reference_series_run(nevh_reference *r, chain *c) {
         reference_series_look(r, c);
         double by = c->parted[c->count - 1] = reference_series_compare(r, c);
         if (!affordable(r, c))
-            return nevh__fail(&r->report, NEVH_EFAILED,
-                              "Taylor series cost too much for a reference "
-                              "until t = %.9g",
-                              c->until);
+            return cost_too_much(r, c);
         if (by > c->limit)
             return part_at(r, c);
     }
@@ -323,6 +329,8 @@ static chain *chain_new(nevh_reference *r, double tolerance,
     c->limit = parted ? nevh__reference_wanted / certain : apart;
     c->foreseen = first ? (double)first->count : 0;
     int status = reference_series_plan(r, c, tolerance);
+    if (!status && r->integrator != nevh_taylor && FEW * work_of(c) > most_work)
+        status = cost_too_much(r, c);
     if (!status)
         status = reference_series_start(r, c);
     if (!status)

@@ -129,9 +129,13 @@ static bool run_pilot(nevh__step_selection *e, int steps) {
     return step && evolve;
 }
 
-/* As many steps as most_work allows: a step takes six gradients. */
+/* As many steps as most_work allows: a step takes six gradients.  Of exact ones few
+   are taken where each has many instances. */
 static int pilot_steps(const nevh_field *f) {
+    static const double many = 7e3;
     double work = 0;
+    if (f->gradient == nevh_exact)
+        return (double)f->instances > many ? PILOT_SAMPLES : MOST_STEPS;
     for (size_t j = 0; j < f->n_terms; j++)
         work += (double)f->terms[j].term->decl.count *
                 (double)(f->terms[j].nv * f->terms[j].nv);

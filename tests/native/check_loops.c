@@ -147,6 +147,7 @@ static void assert_same(nevh_scene *scene, const nevh_integrator *scheme,
                 b = nevh_stepper_counts(native.s);
     ck_assert_uint_eq(a.values, b.values);
     ck_assert_uint_eq(a.gradients, b.gradients);
+    ck_assert(nevh_stepper_native(native.s, NULL)); /* none differed */
     end(&tape);
     end(&native);
 }

@@ -126,6 +126,7 @@ TEST_EACH(parts_same_bits, 12) {
                          NEVH_OK);
         ck_assert(pair_same(&x));
     }
+    ck_assert(nevh_stepper_native(x.native, NULL)); /* none differed */
     pair_free(&x);
     nevh_scene_free(scene);
 }

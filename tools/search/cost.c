@@ -145,7 +145,7 @@ static void time_others(costs *c, bool shown) {
         for (size_t k = 0; k < c->study[i].count; k++) {
             row *r = &c->study[i].level[k];
             if (shown && (!cost_shows(c, &c->study[i]) ||
-                          search_out_of_time(&c->search)))
+                          search_out_of_time(&c->search, 1)))
                 continue;
             study_time(&c->search, &c->study[i], k);
             if (!shown && r->ran)

@@ -39,7 +39,8 @@ void cost_price(costs *c, list *words) {
     for (size_t i = 0; nevh_gradients()[i]; i++) {
         const char *name = nevh_gradient_name(nevh_gradients()[i]);
         study other = study_new(&c->search.plan, l->integrator, name);
-        if (strcmp(name, l->gradient) != 0 && !search_out_of_time(&c->search) &&
+        if (strcmp(name, l->gradient) != 0 &&
+            !search_out_of_time(&c->search, 1) &&
             gradient_fits(&c->search.plan, name, NULL)) {
             study_run(&c->search, &other, k);
             study_time(&c->search, &other, 0);

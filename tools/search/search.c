@@ -60,14 +60,15 @@ const char *search_error(const search *s) {
                                 : "state";
 }
 
-bool search_out_of_time(const search *s) {
-    return cpu_seconds() - s->started + seconds_of_children() - s->compiled >
-           s->seconds;
+bool search_out_of_time(const search *s, double share) {
+    double passed = cpu_seconds() - s->started;
+    return passed + seconds_of_children() - s->compiled > share * s->seconds;
 }
 
-/* True, too, on a machine so slow that the seconds end before the work does. */
+/* True, too, on a machine so slow, or of schemes whose plans take so long, that the
+   seconds end before the work does. */
 bool search_is_over(const search *s, double share) {
-    return s->spent > share * s->budget || search_out_of_time(s);
+    return s->spent > share * s->budget || search_out_of_time(s, share);
 }
 
 bool search_may_time(const search *s) {

@@ -213,7 +213,7 @@ void study_begin(search *s, study *l) {
         find_out_whether_kept(s, l);
         return;
     }
-    if (search_is_over(s, 0.5)) {
+    if (search_is_over(s, 0.5) || search_out_of_time(s, 0.25)) {
         l->end = STUDY_LIMIT;
         return;
     }

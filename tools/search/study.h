@@ -64,8 +64,8 @@ typedef struct {
  * tolerances of the plan. */
 search search_begin(const plan *, const options *, double budget);
 bool search_is_over(const search *, double share); /* of the budget */
-/* True if no seconds are left. */
-bool search_out_of_time(const search *);
+/* True if that share of the seconds has passed. */
+bool search_out_of_time(const search *, double share);
 /* True if times may be measured again: this takes seconds, and changes no other
    column. */
 bool search_may_time(const search *);
