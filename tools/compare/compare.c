@@ -217,6 +217,14 @@ static int draw_rows(const options *o, const plan *p, const row_list *r) {
                : compare_plot(o, p, r->row, r->count);
 }
 
+/* Runs past the end of the solution have no verdict. */
+static void look_for_end(plan *p, row_list *r) {
+    if (isnan(p->ends) && !p->reference && any_trouble(r))
+        p->ends = plan_ends(p);
+    for (size_t i = 0; isfinite(p->ends) && i < r->count; i++)
+        r->row[i].energy.verdict = NEVH_UNDECIDED;
+}
+
 static int compare_rows(const options *o, plan *p, row_list *r) {
     output out;
     int status = TOOL_OK;
@@ -227,10 +235,7 @@ static int compare_rows(const options *o, plan *p, row_list *r) {
         r->row[i].errors = envelope_new(p->run->t_start, p->t_end);
     run_rows(p, r, o->quiet);
     observe_orders(r->row, r->count);
-    if (isnan(p->ends) && !p->reference && any_trouble(r))
-        p->ends = plan_ends(p);
-    for (size_t i = 0; isfinite(p->ends) && i < r->count; i++)
-        r->row[i].energy.verdict = NEVH_UNDECIDED;
+    look_for_end(p, r);
     page result = make_page(o, p, r);
     bool first = plot_goes_first(o);
     int drawn = first ? draw_rows(o, p, r) : TOOL_OK;
