@@ -84,18 +84,24 @@ static bool open_numbers(const nevh_field *f, nevh__joint *j, bool **opened) {
     return *opened && (!open || j->tape);
 }
 
+/* Of no variables there may be no array. */
+static void copy(void *to, const void *from, size_t size) {
+    if (size)
+        memcpy(to, from, size);
+}
+
 static void take_member(const nevh_field *f, nevh__joint *j, size_t i,
                         const bool opened[]) {
     const nevh__planned *from = &f->terms[j->members[i]];
     const nevh_term *x = &from->term->decl;
     const double *numbers;
-    memcpy(j->q + i * from->nq, x->q, from->nq * sizeof *j->q);
-    memcpy(j->p + i * from->np, x->p, from->np * sizeof *j->p);
+    copy(j->q + i * from->nq, x->q, from->nq * sizeof *j->q);
+    copy(j->p + i * from->np, x->p, from->np * sizeof *j->p);
     if (from->delta)
         memcpy(j->plan.delta + i * from->nv, from->delta,
                from->nv * sizeof *from->delta);
     double *c = j->c + i * j->entry.decl.nc;
-    memcpy(c, x->c, x->nc * sizeof *c);
+    copy(c, x->c, x->nc * sizeof *c);
     c += x->nc;
     size_t count = j->tape ? nevh__tape_numbers(x->params, &numbers) : 0;
     for (size_t k = 0; k < count; k++)
