@@ -84,7 +84,7 @@ static bool open_numbers(const nevh_field *f, nevh__joint *j, bool **opened) {
     return *opened && (!open || j->tape);
 }
 
-/* Of no variables there may be no array. */
+/* There may be no array of no variables. */
 static void copy(void *to, const void *from, size_t size) {
     if (size)
         memcpy(to, from, size);
