@@ -67,21 +67,11 @@ static bool is_driven_there(const nevh_energy_report *r) {
            r->grown > some && r->relative[1] <= fmin(1, level * r->relative[0]);
 }
 
-/* A drive, or a parameter that is driven, makes the motion grow so far that the error
-   of a scheme which keeps nothing is large, too, and yet small beside it. */
-static bool is_outgrown(const nevh_energy_report *r) {
-    static const double much = 100, small = 0.01;
-    return r->theory == NEVH_THEORY_LOSES && r->grown > much &&
-           fmax(r->relative[0], r->relative[1]) <= small;
-}
-
 /* An error that large comes back where the orbit is still of use. */
 static nevh_verdict judge_large(const nevh_energy_report *r, double times) {
     static const double hopeless = 1e6, much = 10;
     bool returns = r->least <= lasting * r->max;
     bool huge = r->max > much * r->limit;
-    if (is_outgrown(r))
-        return NEVH_UNDECIDED;
     if (!(r->max <= hopeless * r->limit) || r->theory == NEVH_THEORY_LOSES)
         return NEVH_UNSTABLE;
     if (times < (huge ? 2 * lasted : lasted))

@@ -54,18 +54,6 @@ scene 'x = 1\ny = 0\np_y = sqrt(2)*(1 - 3e-6)' \
 compares $work/escape.nevh --integrators verlet
 verdicts verlet=bounded
 
-# A driven spring makes the motion grow a hundred thousandfold, and the error with it,
-# which is a hundredth of the energies met, and of the orbit 3e-6.  The contrast: a step
-# at which the scheme itself grows, in the same scene and without the drive.
-scene 'x = 0.1' 'K = p_x^2/2\nV = x^2/2*(1 + 0.2*cos(2*t))' \
-    't_end = 300\ndt = 0.05' mathieu
-compares $work/mathieu.nevh --integrators rk4
-verdicts rk4=undecided
-scene 'x = 0.1' 'K = p_x^2/2\nV = x^2/2*(1 + 0.2*cos(20*t))' \
-    't_end = 300\ndt = 3' too-long
-compares $work/too-long.nevh --integrators rk4
-verdicts rk4=unstable
-
 # A loss that is less than twofold from the first fifth to the last: of half the
 # energy at once, and of a line below its ripple.
 scene 'x = 1\ny = 0.01' 'K = (p_x^2+p_y^2)/2\nV = x^2/2+5e3*y^2+10*x^2*y^2' \
