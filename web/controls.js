@@ -131,7 +131,7 @@ function showSchemes() {
     (_, i) => choose(i)));
 }
 // The slider goes by equal ratios, up to the limit.
-const longest = () => S.limit || 8 * S.dt;
+const longest = () => Math.max(S.limit || 8 * S.dt, S.dt);
 const stepOf = (value) => +(longest() * 10 ** (3 * (value / 100 - 1))).toPrecision(4);
 function showSliders() {
   at("dt").value = 100 * (1 + Math.log10(S.dt / longest()) / 3);
@@ -332,7 +332,6 @@ function listen() {
     const dt = +at("dt-number").value;
     if (!(dt > 0)) { at("dt-number").value = S.dt; return; }
     S.dt = dt;
-    S.limit = Math.max(S.limit, dt);
     race().then(showSliders);
   };
   at("view").onchange = () => { S.section = +at("view").value; showView(); restartSection(); };

@@ -190,9 +190,8 @@ async function findLimit() {
   const h = scene.run.step;
   const { ok, steps } = await ask({ ask: "limit", h, schemes: S.schemes });
   const finite = ok ? steps.filter((v) => v > 0 && Number.isFinite(v)) : [];
-  S.limit = Math.max(finite.length ? Math.min(...finite) : 8 * h, S.dt);
-  S.limited = finite.length > 0 && S.limit > S.dt
-    ? S.schemes[steps.indexOf(S.limit)] : "";
+  S.limit = finite.length ? Math.min(...finite) : 8 * h;
+  S.limited = finite.length ? S.schemes[steps.indexOf(S.limit)] : "";
   showSliders();
 }
 

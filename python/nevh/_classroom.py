@@ -98,8 +98,8 @@ def boxes(asked):
 
 
 def numbers_of(given, known):
-    """The sheets that are asked for: N, or all where none is given."""
-    if given is None:
+    """The sheets that are asked for: N, or all where that, or none, is given."""
+    if given in (None, "all"):
         return known
     if not given.isdigit() or int(given) not in known:
         raise Error("there is no sheet %s; there are %d to %d" % (given, known[0], known[-1]))
@@ -289,6 +289,8 @@ def run(given):
     names = [None] if given.name is None else names_of(given.name)
     chosen = numbers_of(given.number, sorted(room.quantities))
     if given.answers:
+        if (given.output or "").endswith((".html", ".ipynb")):
+            raise Error("the answers are a table: -o FILE.csv, not %s" % given.output)
         rows = answer_rows(room, given, names, chosen)
         return as_json(rows) if is_json else as_csv(rows) if given.format == "csv" or \
             given.output else as_table(rows)

@@ -77,12 +77,19 @@ await tried("pendulum", "integrators=verlet", async (page) => {
       .find((name) => name && !S.schemes.includes(name));
     menu.dispatchEvent(new Event("change")); })()`;
   await page.evaluate(add + "; " + add);
-  await page.until("list.length === 2 && steps > 1");
+  check(await page.until("list.length === 3 && steps > 1", 20), "three schemes do not move");
   await page.evaluate(add);
   check(await page.until("list.length === 4 && steps > 5", 20),
     "four schemes do not move: " + await page.evaluate("list.length + ', ' + steps"));
   check(await page.evaluate("histories.length === 4 && rows.every((r) => r[0] > 0)"),
     "a scheme that was added stands");
+  // The limit of stability is not that of the step that is typed.
+  await page.until("S.limited !== '' && S.limit > 0", 20);
+  const limit = await page.evaluate("S.limit");
+  await page.evaluate(`at("dt-number").value = 1e6;
+    at("dt-number").dispatchEvent(new Event("change"))`);
+  check(await page.until("S.dt === 1e6 && !busy", 20), "a long step is not taken");
+  check(await page.evaluate("S.limit") === limit, "the limit follows the step");
 });
 
 // It moves, alone, and stops and goes by keys; formulas are changed, and wrong
