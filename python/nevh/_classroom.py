@@ -72,7 +72,8 @@ def write_notebook(sheet, path, asked=()):
 
 def file_name(name):
     """A name as a part of a file's name."""
-    letters = unicodedata.normalize("NFKD", plain(name)).encode("ascii", "ignore").decode()
+    whole = plain(name).translate(str.maketrans("łøđ", "lod"))  # no marks on letters
+    letters = unicodedata.normalize("NFKD", whole).encode("ascii", "ignore").decode()
     made = re.sub(r"[^a-z0-9]+", "-", letters).strip("-")
     return made if made else "student-" + plain(name).encode().hex()[:16]
 
@@ -267,7 +268,8 @@ def mark_rows(room, given):
 def sums(right):
     """A line a name: how many of the tasks that anybody answers are right."""
     of = len(set().union(*right.values()))
-    return "".join("%s: %d of %d are right\n" % (name, sum(one.values()), of)
+    return "".join("%s: %d of %d are right\n" % (name, sum(one.values()), of) if one
+                   else "%s: nothing was handed in\n" % name
                    for name, one in right.items())
 
 
