@@ -8,11 +8,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { statSync } from "node:fs";
 import { basename, resolve } from "node:path";
-import { browse } from "../tests/support/browser.mjs";
+import { addScheme, browse } from "../tests/support/browser.mjs";
 
 const [program, ...files] = process.argv.slice(2);
 const SECONDS = 10, SCHEMES = 4;
-const pause = (seconds) => new Promise((resolve) => setTimeout(resolve, 1e3 * seconds));
+const pause = (seconds) => new Promise((done) => setTimeout(done, 1e3 * seconds));
 console.log("page                          bytes  first motion s  frames a second  schemes");
 for (const file of files) {
   const page = await browse(program, "file://" + resolve(file));
@@ -21,13 +21,7 @@ for (const file of files) {
       throw new Error(file + " does not move");
     const first = await page.evaluate("performance.now() / 1e3");
     for (let count = 0; count < SCHEMES; count++)
-      await page.evaluate(`(() => {
-        const menu = [...document.querySelectorAll("#schemes select")].at(-1);
-        if (menu.value) return;
-        menu.value = [...menu.options].map((o) => o.value)
-          .find((name) => name && !S.schemes.includes(name));
-        menu.dispatchEvent(new Event("change"));
-      })()`), await pause(0.5);
+      await page.evaluate(addScheme), await pause(0.5);
     const count = await page.evaluate("list.length");
     const before = await page.evaluate("frames"), began = Date.now();
     await pause(SECONDS);

@@ -202,7 +202,7 @@ async function race() {
   busy = true;
   await start().finally(() => { busy = false; });
 }
-// What is drawn stays that of the runs before until all of the new ones is known.
+// The runs before are drawn until all of the new ones is known.
 async function start() {
   const one = { gradient: S.gradient, h: S.dt };
   const runs = S.schemes.map((scheme) => ({ ...one, scheme, colour: nevhLook(scheme) }));

@@ -45,6 +45,15 @@ export async function browse(program, address, { size = [1280, 900],
   };
 }
 
+// Evaluated in a live page: chooses one scheme more, if there is room for it.
+export const addScheme = `(() => {
+  const menu = [...document.querySelectorAll("#schemes select")].at(-1);
+  if (menu.value) return;
+  menu.value = [...menu.options].map((option) => option.value)
+    .find((name) => name && !S.schemes.includes(name));
+  menu.dispatchEvent(new Event("change"));
+})()`;
+
 // What a program that tries pages counts, and says at its end; saved() keeps a picture
 // in the folder $NEVH_PICTURES, where there is one, to be looked at.
 export function trial() {

@@ -6,7 +6,7 @@
 // the page is to have after 100 steps.
 import { readFileSync } from "node:fs";
 import { basename } from "node:path";
-import { browse, trial } from "./browser.mjs";
+import { addScheme, browse, trial } from "./browser.mjs";
 
 const [program, folder] = process.argv.slice(2);
 const { check, saved, ended } = trial();
@@ -72,13 +72,9 @@ await tried("both", "", async (page) => {
 // Schemes may be added while it moves, several in a moment.
 await tried("pendulum", "integrators=verlet", async (page) => {
   check(await page.until("steps > 5"), "one scheme does not move");
-  const add = `(() => { const menu = [...document.querySelectorAll("#schemes select")].at(-1);
-    menu.value = [...menu.options].map((o) => o.value)
-      .find((name) => name && !S.schemes.includes(name));
-    menu.dispatchEvent(new Event("change")); })()`;
-  await page.evaluate(add + "; " + add);
+  await page.evaluate(addScheme + "; " + addScheme);
   check(await page.until("list.length === 3 && steps > 1", 20), "three schemes do not move");
-  await page.evaluate(add);
+  await page.evaluate(addScheme);
   check(await page.until("list.length === 4 && steps > 5", 20),
     "four schemes do not move: " + await page.evaluate("list.length + ', ' + steps"));
   check(await page.evaluate("histories.length === 4 && rows.every((r) => r[0] > 0)"),

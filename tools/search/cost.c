@@ -270,7 +270,7 @@ static int draw_costs(const options *o, const costs *c) {
     return status;
 }
 
-static double cost_budget(const options *o) {
+double cost_budget(const options *o) {
     return o->search.budget > 0 ? o->search.budget : SEARCH_BUDGET;
 }
 

@@ -36,36 +36,46 @@ static double growth(const lengths *l, size_t scheme) {
                : NAN;
 }
 
-/* A reference as long as the run: one that is longer has few states early on. */
-static int change_length(plan *p, double end) {
-    nevh_reference_free(p->reference);
-    free(p->no_reference);
-    p->reference = NULL;
-    p->no_reference = NULL;
-    p->t_end = end;
-    return plan_reference(p, end);
+/* Runs all schemes to the end k, with a reference as long as the run: one that is longer
+   has few states early on. */
+static int run_to(lengths *l, const search *s, size_t k) {
+    plan part = l->plan;
+    bool whole = k == LENGTHS - 1;
+    int status = TOOL_OK;
+    part.t_end = l->end[k];
+    if (!whole) {
+        part.reference = NULL;
+        part.no_reference = NULL;
+        status = plan_reference(&part, part.t_end);
+    }
+    for (size_t i = 0; i < l->schemes && !status; i++) {
+        row *r = &l->row[i * LENGTHS + k];
+        search_progress(s, r);
+        row_run(&part, r);
+        if (r->ran && whole)
+            rows_time(&part, &r, 1, s->repeats ? s->repeats : ROUNDS, false);
+    }
+    if (!whole) {
+        nevh_reference_free(part.reference);
+        free(part.no_reference);
+    }
+    return status;
 }
 
-/* Runs to each end with one step, which costs as much as verlet's. */
+/* Of each scheme one step, which costs as much as verlet's. */
 static int run_lengths(lengths *l, const options *o) {
     row_list first = rows_of(&l->plan);
     int status = TOOL_OK;
     l->schemes = first.count;
     l->row = tool_allocate(first.count * LENGTHS, sizeof *l->row);
-    search s = search_begin(&l->plan, o, SEARCH_BUDGET);
-    for (size_t i = 0; i < first.count; i++)
+    search s = search_begin(&l->plan, o, cost_budget(o));
+    for (size_t i = 0; i < first.count; i++) {
         match_row(&l->plan, &first.row[i]);
-    for (size_t k = 0; k < LENGTHS && !status; k++) {
-        status = change_length(&l->plan, l->end[k]);
-        for (size_t i = 0; i < first.count && !status; i++) {
-            row *r = &l->row[i * LENGTHS + k];
-            *r = first.row[i];
-            search_progress(&s, r);
-            row_run(&l->plan, r);
-            if (r->ran && k == LENGTHS - 1)
-                rows_time(&l->plan, &r, 1, ROUNDS, false);
-        }
+        for (size_t k = 0; k < LENGTHS; k++)
+            l->row[i * LENGTHS + k] = first.row[i];
     }
+    for (size_t k = 0; k < LENGTHS && !status; k++)
+        status = run_to(l, &s, k);
     search_end(&s);
     rows_free(&first);
     return status;
@@ -82,16 +92,17 @@ static size_t best_at(const lengths *l, size_t k) {
 static char *digits_text(const lengths *l, size_t scheme, size_t k) {
     const row *r = row_at(l, scheme, k);
     double error = error_at(l, scheme, k);
-    return !r->ran ? text_print("  %s", r->failed ? "fails" : "refused")
-           : isinf(error)
-               ? text_print("  -")
-               : text_print("%s %.1f", best_at(l, k) == scheme ? "*" : " ",
-                            fmax(0, -log10(error)));
+    const char *star = best_at(l, k) == scheme ? "*" : " ";
+    return !r->ran        ? text_print("  %s", r->failed ? "fails" : "refused")
+           : isinf(error) ? text_print("  -")
+           : error == 0   ? text_print("%s all", star)
+                          : text_print("%s %.1f", star, fmax(0, -log10(error)));
 }
 
 static table *table_of(const lengths *l) {
     table *t = table_new();
-    table_titles(t, "integrator,dt");
+    bool gradients = l->plan.gradients.count > 1;
+    table_titles(t, gradients ? "integrator,gradient,dt" : "integrator,dt");
     for (size_t k = 0; k < LENGTHS; k++) {
         char *title = text_print("  t = %.3g", l->end[k]);
         table_column(t, title);
@@ -101,6 +112,8 @@ static table *table_of(const lengths *l) {
     for (size_t i = 0; i < l->schemes; i++) {
         const row *longest = row_at(l, i, LENGTHS - 1);
         table_text(t, longest->integrator);
+        if (gradients)
+            table_text(t, longest->gradient);
         table_shown(t, "%.4g", longest->dt);
         for (size_t k = 0; k < LENGTHS; k++) {
             char *text = digits_text(l, i, k);
@@ -121,9 +134,10 @@ static table *table_of(const lengths *l) {
 
 static table *records_of(const lengths *l) {
     table *t = table_new();
-    table_titles(t,
-                 "scene,integrator,gradient,dt,t_end,status,max_energy_error,"
-                 "state_error,error_exponent,gradient_evals,seconds");
+    table_titles(
+        t,
+        "scene,integrator,gradient,dt,t_end,status,max_energy_error,"
+        "state_error,observable_error,error_exponent,gradient_evals,seconds");
     for (size_t i = 0; i < l->schemes * LENGTHS; i++) {
         const row *r = &l->row[i];
         bool last = i % LENGTHS == LENGTHS - 1;
@@ -135,6 +149,7 @@ static table *records_of(const lengths *l) {
         table_text(t, r->status);
         table_number(t, r->ran ? r->energy.max : NAN);
         table_number(t, r->ran ? r->state_error : NAN);
+        table_number(t, r->ran && r->observable ? r->observable_error : NAN);
         table_number(t, last ? growth(l, i / LENGTHS) : NAN);
         table_number(t, r->ran ? (double)r->counts.gradients : NAN);
         table_number(t, last && r->ran ? r->seconds : NAN);
@@ -142,20 +157,29 @@ static table *records_of(const lengths *l) {
     return t;
 }
 
-/* Between two runs, on lines through logarithms, the first length at which `to` comes
-   to err less than `from`; NAN: none. */
+/* The first of the two runs between which `to` comes to err less than `from`, for good;
+   LENGTHS: there are none, or they cross more than once. */
+static size_t find_crossing(const lengths *l, size_t from, size_t to) {
+    size_t at = 0;
+    while (at < LENGTHS && error_at(l, from, at) < error_at(l, to, at))
+        at++;
+    for (size_t k = at; k < LENGTHS; k++)
+        if (!(error_at(l, from, k) > error_at(l, to, k)))
+            return LENGTHS;
+    return at > 0 && at < LENGTHS ? at - 1 : LENGTHS;
+}
+
+/* Between two runs, on lines through logarithms; NAN: none. */
 static double crossing_within(const lengths *l, size_t from, size_t to,
                               double *error) {
-    for (size_t k = 1; k < LENGTHS; k++) {
-        double before = error_at(l, to, k - 1), now = error_at(l, to, k);
-        double a = log(error_at(l, from, k - 1) / before);
-        double b = log(error_at(l, from, k) / now), share = a / (a - b);
-        if (a < 0 && b > 0) {
-            *error = before * pow(now / before, share);
-            return l->end[k - 1] * pow(l->end[k] / l->end[k - 1], share);
-        }
-    }
-    return NAN;
+    size_t k = find_crossing(l, from, to);
+    if (k == LENGTHS)
+        return NAN;
+    double before = error_at(l, to, k), now = error_at(l, to, k + 1);
+    double a = log(error_at(l, from, k) / before);
+    double b = log(error_at(l, from, k + 1) / now), share = a / (a - b);
+    *error = before * pow(now / before, share);
+    return l->end[k] * pow(l->end[k + 1] / l->end[k], share);
 }
 
 /* Beyond the longest run, at the rates of both; NAN: none. */
@@ -165,16 +189,17 @@ static double crossing_beyond(const lengths *l, size_t from, size_t to,
     double last = error_at(l, to, LENGTHS - 1);
     double gap = log(last / error_at(l, from, LENGTHS - 1));
     double rate = growth(l, from) - growth(l, to), factor = exp(gap / rate);
+    for (size_t k = 0; k < LENGTHS; k++)
+        if (!(error_at(l, from, k) < error_at(l, to, k)))
+            return NAN;
     *error = last * pow(factor, growth(l, to));
-    return gap > 0 && rate > 0.5 && factor < FARTHEST
-               ? l->end[LENGTHS - 1] * factor
-               : NAN;
+    return rate > 0.5 && factor < FARTHEST ? l->end[LENGTHS - 1] * factor : NAN;
 }
 
 /* The length from which `to` errs less than `from`, which errs less before that;
    NAN: none at which the orbit is still known. */
 static double crossing(const lengths *l, size_t from, size_t to) {
-    double error, t = crossing_within(l, from, to, &error);
+    double error = INFINITY, t = crossing_within(l, from, to, &error);
     if (isnan(t))
         t = crossing_beyond(l, from, to, &error);
     return error < useless ? t : NAN;
@@ -186,24 +211,28 @@ static bool is_symplectic(const lengths *l, size_t scheme) {
 
 static void crossing_word(const lengths *l, size_t from, size_t to,
                           list *words) {
+    const row *a = row_at(l, from, 0), *b = row_at(l, to, 0);
+    bool several = l->plan.gradients.count > 1;
     double t = crossing(l, from, to);
     char *rounded = text_print("%.2g", t);
     if (isfinite(t))
         list_print(
-            words, "%s errs less than %s up to t = %g%s, and more from then on",
-            row_at(l, from, 0)->integrator, row_at(l, to, 0)->integrator,
-            strtod(rounded, NULL),
+            words,
+            "%s errs less than %s%s%s up to t = %g%s, and more from then on",
+            a->integrator, b->integrator, several ? " with " : "",
+            several ? a->gradient : "", strtod(rounded, NULL),
             t > l->end[LENGTHS - 1] ? ", if both go on growing so (no run "
                                       "is as long)"
                                     : "");
     free(rounded);
 }
 
-/* One of each pair is symplectic. */
+/* One of each pair is symplectic; both have one gradient. */
 static void crossing_words(const lengths *l, list *words) {
     for (size_t i = 0; i < l->schemes; i++)
         for (size_t j = 0; j < l->schemes; j++)
-            if (is_symplectic(l, i) != is_symplectic(l, j))
+            if (is_symplectic(l, i) != is_symplectic(l, j) &&
+                row_at(l, i, 0)->gradient == row_at(l, j, 0)->gradient)
                 crossing_word(l, i, j, words);
 }
 
@@ -211,16 +240,17 @@ static page page_of(const lengths *l, const options *o) {
     page result = {.table =
                        o->format == FORMAT_TABLE ? table_of(l) : records_of(l)};
     plan_notes(&l->plan, &result.before);
-    list_print(&result.before, "%s",
-               l->plan.by_state
-                   ? "digits: -log10 of the largest error of the orbit"
-                   : "digits: -log10 of the largest energy error");
+    list_print(&result.before, "digits: -log10 of the largest error of the %s",
+               l->plan.observable ? "observable"
+               : l->plan.by_state ? "orbit"
+                                  : "energy");
     if (l->schemes < l->plan.integrators.count * l->plan.gradients.count)
         list_add(&result.before,
                  "schemes that choose their steps are left out: their work is "
                  "not matched");
     row_notes(o, &l->plan, l->row, l->schemes * LENGTHS, &result.before);
     state_notes(&l->plan, &result.before);
+    observable_notes(&l->plan, &result.before);
     crossing_words(l, &result.after);
     return result;
 }
@@ -268,12 +298,14 @@ static void choose_step(plan *p, const options *o) {
 static int choose_end(plan *p, const options *o) {
     static const double within = 0.9;
     if (!o->t_end)
-        plan_shorten(p, SEARCH_BUDGET);
-    int status = p->by_state ? plan_reference(p, p->t_end) : TOOL_OK;
-    if (!status && !o->t_end && p->reference &&
+        plan_shorten(p, cost_budget(o));
+    int status = plan_reference(p, p->t_end);
+    if (!status && !o->t_end && p->by_state && p->reference &&
         p->t_end > nevh_reference_horizon(p->reference))
         p->t_end = within * nevh_reference_horizon(p->reference);
-    return status || !p->by_state ? status : plan_require_reference(p);
+    if (!status && p->by_state)
+        status = plan_require_reference(p);
+    return !status && o->observable ? plan_observe(p, o->observable) : status;
 }
 
 int cost_lengths(const options *o) {
@@ -282,7 +314,7 @@ int cost_lengths(const options *o) {
     int status = plan_make(p, o);
     if (!status) {
         p->match_work = true;
-        p->by_state = !option_given(o, "by") || o->search.by;
+        p->by_state = !option_given(o, "by") || o->search.by || o->observable;
         choose_step(p, o);
         status = choose_end(p, o);
         double begin = p->run->t_start, span = p->t_end - begin;

@@ -42,6 +42,8 @@ bool cost_drifts(const study *); /* its energy */
 void cost_price(costs *, list *words);
 /* cost_plot.c: as plot_write. */
 int cost_plot(const options *, const costs *);
+/* cost.c: the budget of work. */
+double cost_budget(const options *);
 /* cost_length.c: the whole command with --against length. */
 int cost_lengths(const options *);
 /* cost_words.c */
