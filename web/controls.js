@@ -137,9 +137,9 @@ function showSliders() {
   at("dt").value = 100 * (1 + Math.log10(S.dt / longest()) / 3);
   const words = "dt = " + nevhNumber(S.dt) + after(scene.t_label);
   if (document.activeElement !== at("dt-number")) at("dt-number").value = S.dt;
-  at("dt-text").textContent = scene.t_label + (S.limited ? (scene.t_label && "; ") +
-    S.limited + " is stable up to " + +S.limit.toPrecision(3) + after(scene.t_label) +
-    " for small oscillations" : "");
+  at("dt-unit").textContent = scene.t_label;
+  at("dt-text").textContent = S.limited ? S.limited + " is stable up to " +
+    +S.limit.toPrecision(3) + after(scene.t_label) + " for small oscillations" : "";
   at("dt").setAttribute("aria-valuetext", words);
   at("speed").value = S.speed;
   at("speed-text").textContent = "t grows by " + nevhNumber(seconds()) +

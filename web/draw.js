@@ -210,7 +210,8 @@ function choosePhaseBox() {
   if (pulling && phaseBox) return;
   const own = trail.filter((_, i) => i % 2 === 0);
   turns = c.period > 0 && (!own.length || Math.max(...own) - Math.min(...own) > c.period / 2
-    || Math.abs(own[0] - c.period * Math.round(own[0] / c.period)) < 0.4 * c.period);
+    || scene.coordinates.length === 1 // levels fill the period
+      && Math.abs(own[0] - c.period * Math.round(own[0] / c.period)) < 0.4 * c.period);
   let [q0, q1, p0, p1] = [Infinity, -Infinity, Infinity, -Infinity];
   for (let i = 0; i < trail.length; i += 2) {
     q0 = Math.min(q0, wrapped(trail[i], c)); q1 = Math.max(q1, wrapped(trail[i], c));
@@ -365,7 +366,7 @@ function report(atOnce) {
   showLesson();
   const facts = factsText();
   if (at("facts").textContent !== facts) at("facts").textContent = facts;
-  const due = ahead[0] ? "largest by t = " + timeText(ahead[0].t) : "";
+  const due = ahead[0] ? "largest by t = " + timeText(ahead[0].t).replace(" ", "\u00a0") : "";
   if (at("due").textContent !== due) at("due").textContent = due;
   written = now();
   if (atOnce || now() - told > 5000 || !playing) {

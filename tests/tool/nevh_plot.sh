@@ -72,6 +72,11 @@ if test -n "$gnuplot"; then
     gnuplot $work/again.gp >$work/again 2>&1 || { fails "keeps a script that fails";
         cat $work/again; }
     cmp $work/out.png $work/first.png || fails "keeps a script that draws something else"
+    # Many lines: fewer pixels.
+    draws run double-pendulum-chaotic --plot $work/many.png
+    bytes=$(wc -c <$work/many.png)
+    test "$bytes" -le 400000 && test "$bytes" -gt 200000 ||
+        fails "draws a picture of $bytes bytes"
     draws compare oscillator --t-end 9 --dt 0.1 --keep-plot-script $work/alone.gp
     gnuplot -e "set terminal dumb" $work/alone.gp | grep -q verlet ||
         fails "keeps a script that draws nothing"
@@ -363,7 +368,7 @@ test -s $work/out && fails "runs before it looks at the columns"
 # Rods and bobs are where the last row says; between steps there are points.
 draws run double-pendulum --t-end 5 --dt 0.02 --plot-kind configuration \
     --plot $svg --keep-plot-script $work/out.gp -o $work/rows.csv
-for text in 'bob 1' 'bob 2' 'x (m)' 'y (m)'; do shows "$text"; done
+for text in 'body 1' 'body 2' 'x (m)' 'y (m)'; do shows "$text"; done
 texts | grep -q 't = 0 ... 5 s; circles: the start; discs: t = 5 s$' ||
     fails "does not say when"
 test "$(points 1)" -gt 2000 || fails "does not draw the reference"

@@ -141,6 +141,12 @@ for text in verlet blanes-moan4; do
     grep -q "^set title \"$text\"" $work/gp || fails "has no panel of $text"
 done
 test "$(grep -c '^\$series' $work/gp)" -eq 32 || fails "has not 32 series"
+for axis in x y; do
+    test "$(grep "^set ${axis}range" $work/gp | head -n 2 | sort -u | wc -l)" -eq 1 ||
+        fails "has other ranges of $axis in each panel"
+done
+grep -q 'NaN with points .*pointsize 0.70 title "start y' $work/gp ||
+    fails "has small dots in its legend"
 # Under a drive and friction H does change, and its levels are those of the start.
 exits 0 portrait damped-driven-pendulum --integrators verlet --plot $work/d.svg \
     --keep-plot-script $work/gp

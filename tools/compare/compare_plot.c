@@ -1,6 +1,7 @@
 /* nevh compare --plot: energy errors against time, a panel a dt.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot/energy_plot.h"
+#include <math.h>
 #include <stdlib.h>
 
 enum { MOST_PANELS = 9 };
@@ -57,7 +58,7 @@ int compare_plot(const options *o, const plan *p, const row rows[],
         tool_refuse("there is nothing to plot: no row has numbers");
         return failed ? TOOL_FAILED : TOOL_USAGE;
     }
-    plot_same_ranges(to);
+    plot_same_ranges(to, INFINITY);
     char *more = energy_plot_words(p);
     plot_note_run(to, p, NULL, more);
     free(more);

@@ -122,8 +122,8 @@ void plot_least_y(plot *p, double factor) {
     current(p)->least_y = factor;
 }
 
-void plot_same_ranges(plot *p) {
-    p->same_ranges = true;
+void plot_same_ranges(plot *p, double times) {
+    p->same_ranges = times;
 }
 
 /* Finds the look of a series of the same name; else the first free one: in the

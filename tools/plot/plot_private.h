@@ -47,7 +47,8 @@ struct plot {
     panel *panel;
     series *series;
     size_t panels, count; /* count: of series */
-    bool same_ranges, stacked;
+    bool stacked;
+    double same_ranges; /* see plot_same_ranges; 0: never */
     field_map map;
     size_t beside; /* panels side by side; 0: chosen */
     size_t hidden; /* points that no logarithmic axis shows */
@@ -118,6 +119,7 @@ typedef struct {
     bool colours;          /* of PLOT_TEXT */
     const char *file;      /* NULL: gnuplot's stdout */
     size_t most_bytes;     /* of SVG; 0: PLOT_MOST_BYTES */
+    double scale;          /* pixels of PNG a pixel of the layout; 0: 2 */
     bool narrow; /* for a telephone: panels and legend one below the other */
 } target;
 void plot_script(const plot *, const target *, FILE *);

@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot_private.h"
 #include <math.h>
+#include <string.h>
 
 static const double room = 0.04;       /* of a linear axis, at either end */
 static const double few_digits = 1e-9; /* what is less counts as level */
@@ -19,20 +20,50 @@ static void widen(range *r, double value) {
     r->high = fmax(r->high, value);
 }
 
-/* The range of the points of a panel that it shows, or of all; empty if there are
+/* The range of the points that a panel shows, in its own span; empty if there are
    none. */
-static range extent(const plot *p, size_t number, coordinate *of) {
-    range r = {INFINITY, -INFINITY}, seen = p->panel[number].span_x;
+static range own_extent(const plot *p, size_t number, range seen,
+                        coordinate *of) {
+    range r = {INFINITY, -INFINITY};
     if (!(seen.low < seen.high))
         seen = (range){-INFINITY, INFINITY};
     for (size_t i = 0; i < p->count; i++) {
         const series *s = &p->series[i];
         for (size_t k = 0; k < s->count; k++)
-            if ((s->panel == number || p->same_ranges) &&
-                s->point[k].x >= seen.low && s->point[k].x <= seen.high)
+            if (s->panel == number && s->point[k].x >= seen.low &&
+                s->point[k].x <= seen.high)
                 widen(&r, of(&s->point[k]));
     }
     return r;
+}
+
+static bool are_alike(const panel *a, const panel *b) {
+    return strcmp(a->x, b->x) == 0 && strcmp(a->y, b->y) == 0;
+}
+
+static bool is_shared(const plot *p, double length, double least) {
+    return isinf(p->same_ranges) || length <= p->same_ranges * least;
+}
+
+/* Its own range, or that of all panels of the same axes where they share it. */
+static range extent(const plot *p, size_t number, coordinate *of) {
+    const panel *on = &p->panel[number];
+    range r = own_extent(p, number, on->span_x, of), all = r;
+    double least = r.high - r.low;
+    for (int pass = 0; pass < 2 && p->same_ranges > 0; pass++)
+        for (size_t i = 0; i < p->panels; i++) {
+            range other = own_extent(p, i, on->span_x, of);
+            double length = other.high - other.low;
+            if (!are_alike(on, &p->panel[i]) || length < 0)
+                continue;
+            if (pass == 0)
+                least = fmin(least, length);
+            else if (is_shared(p, length, least)) {
+                widen(&all, other.low);
+                widen(&all, other.high);
+            }
+        }
+    return is_shared(p, r.high - r.low, least) ? all : r;
 }
 
 static const double digits[] = {1, 1.5, 2, 3, 4, 5, 6, 8, 10};

@@ -6,7 +6,7 @@
 #include <string.h>
 
 static void print_terminal(FILE *f, const target *t, const layout *l) {
-    double w = l->width, h = l->height;
+    double w = l->width, h = l->height, scale = t->scale > 0 ? t->scale : 2;
     switch (t->medium) {
     case PLOT_SVG:
         fprintf(f,
@@ -14,12 +14,14 @@ static void print_terminal(FILE *f, const target *t, const layout *l) {
                 "'sans-serif,%d' background '#ffffff'\n",
                 w, h, PLOT_FONT);
         break;
-    case PLOT_PNG: /* of twice the size */
+    case PLOT_PNG:
         fprintf(f,
                 "set terminal pngcairo size %g,%g enhanced font "
-                "'sans-serif,%d' fontscale 1.5 linewidth 2 pointscale 2 "
+                "'sans-serif,%d' fontscale %g linewidth %g pointscale %g "
                 "background '#ffffff'\n",
-                2 * w, 2 * h, PLOT_FONT); /* fonts: 96 pixels an inch */
+                floor(scale * w), floor(scale * h), PLOT_FONT,
+                0.75 * scale, /* 96 pixels an inch */
+                scale, scale);
         break;
     case PLOT_GIF: /* so many hundredths of a second each frame */
         fprintf(f,

@@ -85,24 +85,36 @@ static void print_name(FILE *f, const char *name) {
     fputs(" noenhanced", f);
 }
 
+/* Draws a series, or with data NULL an entry of the legend alone. */
+static void print_one(FILE *f, const series *s, const plot_look *l,
+                      const char *data, const char *name, bool text) {
+    fputs(data ? data : "NaN", f);
+    print_look(f, s, l, text);
+    print_name(f, name);
+}
+
 /* A series without points is an entry of the legend at most; letters are too
-   coarse for guides. */
+   coarse for guides.  Dots of the legend are as large as one can see. */
 static void print_series(FILE *f, const plot *p, size_t i, bool here,
                          bool titled, bool text, size_t *printed) {
-    bool drawn = here && p->series[i].count;
-    if (text &&
-        (p->series[i].form == PLOT_GUIDE || p->series[i].form == PLOT_LEVEL))
+    const series *s = &p->series[i];
+    bool drawn = here && s->count;
+    if (text && (s->form == PLOT_GUIDE || s->form == PLOT_LEVEL))
         return;
-    if (!drawn && !titled)
-        return;
-    separate(f, printed);
-    if (drawn)
-        fprintf(f, "$series%zu using 1:2", i + 1);
-    else
-        fputs("NaN", f);
-    plot_look look = plot_look_of(p, &p->series[i]);
-    print_look(f, &p->series[i], &look, text);
-    print_name(f, titled ? p->series[i].name : NULL);
+    plot_look look = plot_look_of(p, s), seen = look;
+    if (seen.mark)
+        seen.size = fmax(seen.size, PLOT_USUAL_SIZE);
+    bool together = drawn && seen.size <= look.size;
+    if (drawn) {
+        char data[48];
+        snprintf(data, sizeof data, "$series%zu using 1:2", i + 1);
+        separate(f, printed);
+        print_one(f, s, &look, data, titled && together ? s->name : NULL, text);
+    }
+    if (titled && !together) {
+        separate(f, printed);
+        print_one(f, s, &seen, NULL, s->name, text);
+    }
     if (drawn && look.mark && look.edge)
         fprintf(f,
                 ", \\\n    $series%zu using 1:2 with points linecolor rgb "

@@ -277,9 +277,9 @@ void plot_svg_series(FILE *f, const plot *p, const series *s,
 }
 
 void plot_svg_sample(FILE *f, const plot *p, const series *s, pair at) {
-    static const double long_by = 30, high_by = 12, smallest = 0.7;
+    static const double long_by = 30, high_by = 12;
     plot_look l = plot_look_of(p, s);
-    l.size = fmax(l.size, smallest);
+    l.size = fmax(l.size, PLOT_USUAL_SIZE);
     pair middle = {at.x + long_by / 2, at.y};
     if (l.opacity > 0) {
         fprintf(f,

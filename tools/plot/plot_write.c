@@ -2,9 +2,11 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot_private.h"
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { USUAL_COLUMNS = 80, USUAL_LINES = 24 };
@@ -157,12 +159,34 @@ static void copy(FILE *drawing, FILE *f) {
         putc(c, f);
 }
 
+/* PNG of more than PLOT_MOST_BYTES again with fewer pixels: of lines it takes bytes in
+   proportion to its scale, or to the square of it where they lie close. */
+static int draw_small(const plot *p, const target *t, FILE *drawing) {
+    enum { ATTEMPTS = 4 };
+    target fewer = *t;
+    fewer.scale = 2;
+    int status = draw_to(p, &fewer, drawing);
+    for (int i = 1; i < ATTEMPTS && !status && t->medium == PLOT_PNG; i++) {
+        struct stat found;
+        if (fstat(fileno(drawing), &found) != 0 ||
+            found.st_size <= PLOT_MOST_BYTES)
+            break;
+        fewer.scale *=
+            fmax(0.5, 0.95 * sqrt(PLOT_MOST_BYTES / (double)found.st_size));
+        if (ftruncate(fileno(drawing), 0) != 0)
+            return tool_refuse("no temporary file: %s", strerror(errno));
+        rewind(drawing);
+        status = draw_to(p, &fewer, drawing);
+    }
+    return status;
+}
+
 /* In a file between: gnuplot reports no error of writing, and it may be a device. */
 static int draw_between(const plot *p, const target *t, FILE *f) {
     FILE *drawing = tmpfile();
     if (!drawing)
         return tool_refuse("no temporary file: %s", strerror(errno));
-    int status = draw_to(p, t, drawing);
+    int status = draw_small(p, t, drawing);
     rewind(drawing);
     if (!status)
         (t->medium == PLOT_TEXT ? show : copy)(drawing, f);
