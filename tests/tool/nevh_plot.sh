@@ -368,7 +368,7 @@ test -s $work/out && fails "runs before it looks at the columns"
 # Rods and bobs are where the last row says; between steps there are points.
 draws run double-pendulum --t-end 5 --dt 0.02 --plot-kind configuration \
     --plot $svg --keep-plot-script $work/out.gp -o $work/rows.csv
-for text in 'body 1' 'body 2' 'x (m)' 'y (m)'; do shows "$text"; done
+for text in 'bob 1' 'bob 2' 'x (m)' 'y (m)'; do shows "$text"; done
 texts | grep -q 't = 0 ... 5 s; circles: the start; discs: t = 5 s$' ||
     fails "does not say when"
 test "$(points 1)" -gt 2000 || fails "does not draw the reference"
@@ -404,7 +404,7 @@ for text in Sun Earth Moon 'x (AU)' 'y (AU)'; do shows "$text"; done
 sed 's/^bob = x\[\(.\)\], y.*/bob = x[\1], z[\1]/' $NEVH_SCENES/sun-earth-moon.nevh \
     >$work/side.nevh
 draws run $work/side.nevh --t-end 1 --plot-kind configuration --plot $svg
-for text in 'bob 3' 'x (AU)'; do shows "$text"; done
+for text in 'body 3' 'x (AU)'; do shows "$text"; done
 texts | grep -q '^z (.*AU)$' || fails "names another axis"
 # A unit is as long on both axes, also where the picture is wide.
 draws run figure-eight --t-end 7 --dt 0.05 --plot-kind configuration \
