@@ -129,9 +129,14 @@
       .edge = "a", .at_edge = "sign(...), whose argument reaches 0,")          \
     X(KINK, MOD, "mod", 2, NEVH__H(mod)(a, b), g, NEVH__G(-rint((a - y) / b)), \
       .by_a = {"1"}, .by_b = {"a b / floor neg"},                              \
-      .as = "a b a b / floor * -", .lanewise = true, .usage = "(a, b)")        \
+      .as = "a b a b / floor * -", .lanewise = true, .usage = "(a, b)",        \
+      .edge = "a b / 3.14159265358979323846 * sin",                            \
+      .at_edge = "mod(...), whose first argument reaches a multiple of the "   \
+                 "second,")                                                    \
     X(KINK, FLOOR, "floor", 1, NEVH__L(floor)(a), NEVH__G(0), 0,               \
-      .by_a = {"0"}, .lanewise = true, .exact = true)                          \
+      .by_a = {"0"}, .lanewise = true, .exact = true,                          \
+      .edge = "a 3.14159265358979323846 * sin",                                \
+      .at_edge = "floor(...), whose argument reaches a whole number,")         \
     X(SPECIAL, BESSEL_J0, "bessel_j0", 1, NEVH__S(bessel_j0)(a),               \
       NEVH__G(-nevh__bessel_j1(a)), 0, .usage = 0)                                      \
     X(SPECIAL, BESSEL_J1, "bessel_j1", 1, NEVH__S(bessel_j1)(a),               \

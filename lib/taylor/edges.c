@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+static const double turn = 6.283185307179586;
+
 static bool is_whole(const nevh__graph *g, int node) {
     nevh__wide x;
     return nevh__graph_is_number(g, node, &x) && (double)x == x &&
@@ -94,6 +96,7 @@ static void watch_power(nevh__graph *g, unsigned operation, int a, int b,
     if (order > least || order < -least_pole)
         edges_add(g, (nevh__graph_edge){.node = base,
                                         .also = -1,
+                                        .whole = -1,
                                         .steep = true,
                                         .function = NEVH__POWER,
                                         .exponent = power,
@@ -105,6 +108,7 @@ static void watch_steep(nevh__graph *g, unsigned operation, int a, int b,
                         const char *effect) {
     nevh__graph_edge e = {.node = a,
                           .also = -1,
+                          .whole = -1,
                           .steep = true,
                           .function = (uint8_t)operation,
                           .effect = effect};
@@ -122,6 +126,7 @@ void nevh__graph_watch(nevh__graph *g, unsigned operation, int a, int b,
                        const char *effect) {
     nevh__graph_edge e = {.node = -1,
                           .also = -1,
+                          .whole = -1,
                           .strict = true,
                           .function = (uint8_t)operation,
                           .effect = effect};
@@ -131,6 +136,10 @@ void nevh__graph_watch(nevh__graph *g, unsigned operation, int a, int b,
     const nevh__operation_traits *f = nevh__operation_of(operation);
     if (operation == NEVH__CBRT && nevh__graph_cube_root(g, a) >= 0)
         return;
+    if (operation == NEVH__FLOOR)
+        e.whole = a;
+    if (operation == NEVH__MOD)
+        e.whole = nevh__graph_build(g, "a b /", a, b);
     if (f->edge) {
         e.strict = !f->touches;
         e.node = nevh__graph_build(g, f->edge, a, b);
@@ -144,55 +153,78 @@ void nevh__graph_watch(nevh__graph *g, unsigned operation, int a, int b,
     edges_add(g, e);
 }
 
-/* True if a node changes by whole turns where its operands do; *known is false where
-   it may change by something else. */
-static bool turns_with(const nevh__graph_node *x, const bool turns[],
-                       bool *known) {
-    bool any = (x->a >= 0 && turns[x->a]) || (x->b >= 0 && turns[x->b]);
-    bool circular = x->kind == NEVH__GRAPH_CALL &&
-                    (x->function == NEVH__SIN || x->function == NEVH__COS ||
-                     x->function == NEVH__TAN);
-    if (!any || circular)
-        return false;
-    double c = (double)x->number;
-    *known = *known &&
-             (x->kind == NEVH__GRAPH_ADD ||
-              (x->kind == NEVH__GRAPH_SCALE && c == x->number && c == rint(c)));
-    return true;
+/* How far a node jumps where its operands do; *known is false where that is not known,
+   or a function of it jumps, too. */
+static double jump_of(const nevh__graph_node *x, const double jump[],
+                      bool *known) {
+    static const double near = 1e-12;
+    double a = x->a >= 0 ? jump[x->a] : 0, b = x->b >= 0 ? jump[x->b] : 0;
+    if (a == 0 && b == 0)
+        return 0;
+    if (x->kind == NEVH__GRAPH_ADD)
+        return a + b;
+    if (x->kind == NEVH__GRAPH_SCALE)
+        return (double)x->number * a;
+    bool tangent = x->function == NEVH__TAN;
+    bool circular =
+        x->kind == NEVH__GRAPH_CALL &&
+        (tangent || x->function == NEVH__SIN || x->function == NEVH__COS);
+    double periods = a / (tangent ? turn / 2 : turn);
+    *known = *known && circular &&
+             fabs(periods - rint(periods)) <= near * fabs(periods);
+    return 0;
 }
 
-/* True if nothing but sines and so on reads atan2(y, x), or whole multiples of it. */
-static bool is_circular(const nevh__graph *g, int used, int y, int x,
-                        bool turns[], const int roots[], size_t count) {
+/* How far the function of an edge jumps by itself there. */
+static double first_jump(const nevh__graph_edge *e, const nevh__graph_node *x) {
+    if (x->kind != NEVH__GRAPH_CALL)
+        return 0;
+    if (e->whole >= 0)
+        return x->function == NEVH__FLOOR && x->a == e->whole;
+    return x->function == NEVH__ATAN2 && x->a == e->node && x->b == e->also
+               ? turn
+               : 0;
+}
+
+/* True if H has no jump, since sines and so on alone read what jumps, by periods of
+   theirs. */
+static bool is_circular(const nevh__graph *g, int used,
+                        const nevh__graph_edge *e, double jump[],
+                        const int roots[], size_t count) {
     bool known = true;
     for (int i = 0; i < used; i++) {
-        const nevh__graph_node *n = &g->nodes[i];
-        turns[i] = n->kind == NEVH__GRAPH_CALL && n->function == NEVH__ATAN2 &&
-                   n->a == y && n->b == x;
-        turns[i] = turns[i] || turns_with(n, turns, &known);
+        const nevh__graph_node *x = &g->nodes[i];
+        jump[i] = first_jump(e, x);
+        if (jump[i] == 0)
+            jump[i] = jump_of(x, jump, &known);
     }
     for (size_t i = 0; i < count; i++)
-        known = known && !turns[roots[i]];
+        known = known && jump[roots[i]] == 0;
     return known;
 }
 
-/* The end of the cut is left, a pole of derivatives. */
+/* Of atan2 the end of its cut is left, a pole of derivatives; of floor and mod
+   nothing. */
 void nevh__graph_join_cuts(nevh__graph *g, const int roots[], size_t count) {
     int used = g->used;
-    bool *turns = nevh__array((size_t)used, sizeof *turns);
-    g->failed = g->failed || !turns;
+    double *jump = nevh__array((size_t)used, sizeof *jump);
+    g->failed = g->failed || !jump;
+    size_t kept = 0;
     for (size_t i = 0; i < g->n_edges && !g->failed; i++) {
         nevh__graph_edge e = g->edges[i];
-        if (e.also < 0 ||
-            !is_circular(g, used, e.node, e.also, turns, roots, count))
-            continue;
-        e.node = nevh__graph_build(g, "a a * b b * +", e.node, e.also);
-        e.also = -1;
-        e.function = NEVH__DIVIDE;
-        if (e.node >= 0)
-            g->edges[i] = e;
+        bool joined = (e.also >= 0 || e.whole >= 0) &&
+                      is_circular(g, used, &e, jump, roots, count);
+        if (joined && e.also >= 0) {
+            e.node = nevh__graph_build(g, "a a * b b * +", e.node, e.also);
+            e.also = -1;
+            e.function = NEVH__DIVIDE;
+        }
+        if (!joined || (e.whole < 0 && e.node >= 0))
+            g->edges[kept++] = e;
     }
-    free(turns);
+    if (!g->failed)
+        g->n_edges = kept;
+    free(jump);
 }
 
 /* Poles are no edges by themselves: 1/x is as analytic behind 0 as before, and
@@ -258,6 +290,7 @@ void nevh__graph_watch_poles(nevh__graph *g, const char *effect) {
                                                                  x.a, x.a)
                                              : x.a,
                              .also = -1,
+                             .whole = -1,
                              .strict = true,
                              .function = tangent ? NEVH__TAN : NEVH__DIVIDE,
                              .effect = effect});

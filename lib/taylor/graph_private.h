@@ -50,6 +50,7 @@ typedef struct {
    any polynomial, and may be lost in rounding at its beginning. */
 typedef struct {
     int node, also; /* also: of atan2, whose node is y, x; else -1 */
+    int whole;      /* what floor has for its argument; else -1 */
     bool strict;    /* else it may touch 0: of a root that is squared again */
     bool steep;     /* of a function that grows so */
     uint8_t function;

@@ -60,6 +60,9 @@ static const formula kinks[] = {
      "x^2 + y^2 + cos(atan2(y, x)) + 0.1*atan2(y, x)^2", 2.13802585},
     {"x = 1", "cbrt(x^4)", 1.27081963},
     {"x = 1", "sqrt(x^6)", 0.991492475},
+    {"x = 0.3, 1", "(mod(x + 0.5, 1) - 0.5)^2", 0.217492541},
+    {"x = 0.3, 1", "x*floor(2*x)", 0.2},
+    {"x = 0.3, -1", "x^2/2 + cos(0.5*mod(x, 2*pi))", 0.293506156},
 };
 /* The same operations off these places, or where they cancel. */
 static const formula smooth[] = {
@@ -103,6 +106,12 @@ static const struct {
     {"x = 1\ny = 0.2\np_y = 1",
      "x^2 + y^2 + 0.1*sin(atan2(y, x) - atan2(x, y))*(x^2 + y^2)",
      "x^2 + y^2 - 0.1*(x^2 - y^2)"},
+    {"x = 0.3, 2", "cos(mod(x, 2*pi)) + sin(6*pi*mod(x + 0.2, 1))",
+     "cos(x) + sin(6*pi*(x + 0.2))"},
+    {"x = 0.3, 2",
+     "tan(0.1*(x - floor(x)) + 0.1*floor(x))*x + "
+     "cos(x + 2*pi*floor(x))",
+     "x*tan(0.1*x) + cos(x)"},
 };
 
 enum {
@@ -210,7 +219,8 @@ static int run(nevh_scene *s, nevh_native_use native, double until, double *t) {
 }
 
 static bool is_told_by_name(const formula *f) {
-    static const char *const names[] = {"abs(", "min(", "max(", "sign("};
+    static const char *const names[] = {"abs(",  "min(", "max(",
+                                        "sign(", "mod(", "floor("};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strstr(f->potential, names[i]))
             return true;
