@@ -366,7 +366,7 @@ function report(atOnce) {
   showLesson();
   const facts = factsText();
   if (at("facts").textContent !== facts) at("facts").textContent = facts;
-  const due = ahead[0] ? "largest by t = " + timeText(ahead[0].t).replace(" ", "\u00a0") : "";
+  const due = ahead[0] ? "largest by t = " + timeText(ahead[0].t).replace(/ /g, "\u00a0") : "";
   if (at("due").textContent !== due) at("due").textContent = due;
   written = now();
   if (atOnce || now() - told > 5000 || !playing) {

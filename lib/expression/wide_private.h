@@ -6,12 +6,15 @@
 #ifdef NEVH_QUADMATH
 __extension__ typedef __float128 nevh__wide;
 #define NEVH__WIDE_FUNCTION(f) f##q
+#define NEVH__WIDE_ROUNDING    0x1p-106 /* of a few operations */
 #elif defined(__wasm__) /* long doubles are slow and large there */
 typedef double nevh__wide;
 #define NEVH__WIDE_FUNCTION(f) f
+#define NEVH__WIDE_ROUNDING    0x1p-48
 #else
 typedef long double nevh__wide;
 #define NEVH__WIDE_FUNCTION(f) f##l
+#define NEVH__WIDE_ROUNDING    0x1p-58
 #endif
 
 /* One nevh__tape_operation on numbers.  Without libquadmath special functions

@@ -3,8 +3,13 @@
 #include "taylor/graph_private.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-static const double turn = 6.283185307179586;
+/* Within the rounding of a few operations. */
+static bool is_same(nevh__wide x, nevh__wide y) {
+    nevh__wide apart = x < y ? y - x : x - y;
+    return apart <= NEVH__WIDE_ROUNDING * (x < 0 ? -x : x);
+}
 
 static bool is_whole(const nevh__graph *g, int node) {
     nevh__wide x;
@@ -37,10 +42,12 @@ static bool edges_has(nevh__graph *g, const nevh__graph_edge *e) {
     uint8_t *watched = &g->nodes[e->node].watched;
     if (e->steep)
         return has_steep(g, e);
-    for (size_t i = 0; e->also >= 0 && i < g->n_edges; i++)
-        if (g->edges[i].node == e->node && g->edges[i].also == e->also)
+    bool jumps = e->also >= 0 || e->whole >= 0; /* may be forgotten later */
+    for (size_t i = 0; jumps && i < g->n_edges; i++)
+        if (g->edges[i].node == e->node && g->edges[i].also == e->also &&
+            g->edges[i].whole == e->whole)
             return true;
-    if (e->also >= 0)
+    if (jumps)
         return false;
     bool had = *watched & (e->strict ? STRICT : STRICT | LOOSE);
     *watched |= e->strict ? STRICT : LOOSE;
@@ -153,61 +160,74 @@ void nevh__graph_watch(nevh__graph *g, unsigned operation, int a, int b,
     edges_add(g, e);
 }
 
-/* How far a node jumps where its operands do; *known is false where that is not known,
-   or a function of it jumps, too. */
-static double jump_of(const nevh__graph_node *x, const double jump[],
-                      bool *known) {
-    static const double near = 1e-12;
-    double a = x->a >= 0 ? jump[x->a] : 0, b = x->b >= 0 ? jump[x->b] : 0;
+/* True if a function of a period, a multiple of pi, reads the jump as nothing: whole
+   periods, in all digits or in those of a double. */
+static bool is_periodic(nevh__wide jump, int of_pi) {
+    static const double most = 0x1p20;
+    nevh__wide period = of_pi * nevh__wide_pi();
+    double whole = rint((double)(jump / period));
+    nevh__wide exact = whole * period, plain = whole * (double)period;
+    return fabs(whole) <= most &&
+           (is_same(jump, exact) || is_same(jump, plain) ||
+            is_same(jump, (double)exact));
+}
+
+/* The jump of a node where its operands jump; *known is false where that is not known,
+   or H may jump. */
+static nevh__wide jump_of(const nevh__graph_node *x, const nevh__wide jump[],
+                          bool *known) {
+    nevh__wide a = x->a >= 0 ? jump[x->a] : 0, b = x->b >= 0 ? jump[x->b] : 0;
     if (a == 0 && b == 0)
         return 0;
     if (x->kind == NEVH__GRAPH_ADD)
         return a + b;
     if (x->kind == NEVH__GRAPH_SCALE)
-        return (double)x->number * a;
+        return x->number * a;
     bool tangent = x->function == NEVH__TAN;
     bool circular =
         x->kind == NEVH__GRAPH_CALL &&
         (tangent || x->function == NEVH__SIN || x->function == NEVH__COS);
-    double periods = a / (tangent ? turn / 2 : turn);
-    *known = *known && circular &&
-             fabs(periods - rint(periods)) <= near * fabs(periods);
+    *known = *known && circular && is_periodic(a, tangent ? 1 : 2);
     return 0;
 }
 
-/* How far the function of an edge jumps by itself there. */
-static double first_jump(const nevh__graph_edge *e, const nevh__graph_node *x) {
+/* The jump that the function of an edge has by itself. */
+static nevh__wide first_jump(const nevh__graph_edge *e,
+                             const nevh__graph_node *x) {
     if (x->kind != NEVH__GRAPH_CALL)
         return 0;
     if (e->whole >= 0)
         return x->function == NEVH__FLOOR && x->a == e->whole;
     return x->function == NEVH__ATAN2 && x->a == e->node && x->b == e->also
-               ? turn
+               ? 2 * nevh__wide_pi()
                : 0;
 }
 
-/* True if H has no jump, since sines and so on alone read what jumps, by periods of
-   theirs. */
+/* True if H has no jump, since sines and so on alone read what jumps, in whole
+   periods.
+   jump  zeros, before and after */
 static bool is_circular(const nevh__graph *g, int used,
-                        const nevh__graph_edge *e, double jump[],
+                        const nevh__graph_edge *e, nevh__wide jump[],
                         const int roots[], size_t count) {
     bool known = true;
-    for (int i = 0; i < used; i++) {
+    int from = e->whole >= 0 ? e->whole : e->node, i = from;
+    for (; i < used && known; i++) {
         const nevh__graph_node *x = &g->nodes[i];
         jump[i] = first_jump(e, x);
         if (jump[i] == 0)
             jump[i] = jump_of(x, jump, &known);
     }
-    for (size_t i = 0; i < count; i++)
-        known = known && jump[roots[i]] == 0;
+    for (size_t k = 0; k < count && known; k++)
+        known = jump[roots[k]] == 0;
+    memset(jump + from, 0, (size_t)(i - from) * sizeof *jump);
     return known;
 }
 
-/* Of atan2 the end of its cut is left, a pole of derivatives; of floor and mod
-   nothing. */
+/* The end of the cut of atan2 is left, a pole of derivatives; no edge of floor or mod
+   is. */
 void nevh__graph_join_cuts(nevh__graph *g, const int roots[], size_t count) {
     int used = g->used;
-    double *jump = nevh__array((size_t)used, sizeof *jump);
+    nevh__wide *jump = nevh__array((size_t)used, sizeof *jump);
     g->failed = g->failed || !jump;
     size_t kept = 0;
     for (size_t i = 0; i < g->n_edges && !g->failed; i++) {

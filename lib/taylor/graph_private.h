@@ -50,7 +50,7 @@ typedef struct {
    any polynomial, and may be lost in rounding at its beginning. */
 typedef struct {
     int node, also; /* also: of atan2, whose node is y, x; else -1 */
-    int whole;      /* what floor has for its argument; else -1 */
+    int whole;      /* the argument of floor; else -1 */
     bool strict;    /* else it may touch 0: of a root that is squared again */
     bool steep;     /* of a function that grows so */
     uint8_t function;
@@ -93,8 +93,8 @@ int nevh__graph_build(nevh__graph *, const char *formula, int a, int b);
 /* Adds what an operation on nodes asks for; its result is another node. */
 void nevh__graph_watch(nevh__graph *, unsigned operation, int a, int b,
                        const char *effect);
-/* Forgets the cut of an angle that all functions take as if whole turns were
-   nothing.
+/* Forgets the cuts of atan2, and the jumps of floor and mod, that sines and so on alone
+   read, in whole periods.
    roots   nodes that are H's values */
 void nevh__graph_join_cuts(nevh__graph *, const int roots[], size_t count);
 /* The same of all poles that functions have been given. */

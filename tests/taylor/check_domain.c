@@ -63,6 +63,12 @@ static const formula kinks[] = {
     {"x = 0.3, 1", "(mod(x + 0.5, 1) - 0.5)^2", 0.217492541},
     {"x = 0.3, 1", "x*floor(2*x)", 0.2},
     {"x = 0.3, -1", "x^2/2 + cos(0.5*mod(x, 2*pi))", 0.293506156},
+    /* a kink where mod(...) has an edge that is none */
+    {"x = 0.3, -4", "cos(2*pi*mod(x, 1)) + abs(sin(3.141592653589793*x))",
+     0.0771790295},
+    {"x = 0.3, -1", "cos(mod(x, 2*pi)) + abs(sin(x/2))", 0.28772097},
+    {"x = 0.3, -1", "cos(mod(x, 6.28318530718))", 0.30942975},
+    {"x = 0.3, -1", "1e-9*cos(1e13*floor(x)) + x^2/2", 0.29145679},
 };
 /* The same operations off these places, or where they cancel. */
 static const formula smooth[] = {

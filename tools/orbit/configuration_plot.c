@@ -172,9 +172,9 @@ static void name_bob(plot *to, const bob_list *b, size_t bob,
     const char *given = nevh_scene_part_at(b->scene, b->part[bob]).name;
     if (!given && b->count < 2)
         return;
-    bool hangs = b->count < nevh_scene_part_count(b->scene); /* on rods */
+    bool on_rods = b->count < nevh_scene_part_count(b->scene);
     char *name = given ? text_print("%s", given)
-                       : text_print(hangs ? "bob %zu" : "body %zu", bob + 1);
+                       : text_print(on_rods ? "bob %zu" : "body %zu", bob + 1);
     size_t series = plot_series(to, name);
     plot_style(to, series, PLOT_GUIDE);
     plot_point(to, series, at[0], at[1]);

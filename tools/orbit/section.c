@@ -450,7 +450,7 @@ int section_panel(plot **to, const plan *p, const options *o,
     if (j.count && j.all[0].points && status != TOOL_USAGE)
         draw_series(&j, &j.all[0], to, integrator);
     if (*to)
-        plot_same_ranges(*to, 1.5); /* not those of a scheme that runs away */
+        plot_same_ranges(*to, 1.5); /* a scheme that diverges has its own */
     nevh_stepper_free(s);
     forget(&j);
     return status;

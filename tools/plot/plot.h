@@ -52,8 +52,8 @@ void plot_span_x(plot *, double low, double high); /* exactly this */
 void plot_span_y(plot *, double low, double high);
 void plot_limit_y(plot *, double low, double high); /* no more than this */
 void plot_least_y(plot *, double factor); /* of a logarithmic axis: no less */
-/* Panels of the same axes show the same ranges, but for those whose points reach more
-   than `times` as far as those of another one. */
+/* Panels of the same axes show the same ranges, but for those whose range is more than
+   `times` as long as the median. */
 void plot_same_ranges(plot *, double times);
 /* The first panel is a map: values z[row*columns + column] at x[column], y[row],
    in colours that are lighter the larger they are, so that they read in grey, by

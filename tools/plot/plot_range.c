@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot_private.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const double room = 0.04;       /* of a linear axis, at either end */
@@ -29,41 +30,59 @@ static range own_extent(const plot *p, size_t number, range seen,
         seen = (range){-INFINITY, INFINITY};
     for (size_t i = 0; i < p->count; i++) {
         const series *s = &p->series[i];
-        for (size_t k = 0; k < s->count; k++)
-            if (s->panel == number && s->point[k].x >= seen.low &&
-                s->point[k].x <= seen.high)
+        for (size_t k = 0; k < s->count && s->panel == number; k++)
+            if (s->point[k].x >= seen.low && s->point[k].x <= seen.high)
                 widen(&r, of(&s->point[k]));
     }
     return r;
+}
+
+static int compare_doubles(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
 }
 
 static bool are_alike(const panel *a, const panel *b) {
     return strcmp(a->x, b->x) == 0 && strcmp(a->y, b->y) == 0;
 }
 
-static bool is_shared(const plot *p, double length, double least) {
-    return isinf(p->same_ranges) || length <= p->same_ranges * least;
+/* The median length of the ranges of the panels with the same axes. */
+static double usual_length(const plot *p, size_t number, coordinate *of) {
+    double *length = tool_allocate(p->panels, sizeof *length), usual = 0;
+    size_t count = 0;
+    for (size_t i = 0; i < p->panels; i++) {
+        range r = own_extent(p, i, p->panel[number].span_x, of);
+        if (r.low <= r.high && are_alike(&p->panel[number], &p->panel[i]))
+            length[count++] = r.high - r.low;
+    }
+    if (count) {
+        qsort(length, count, sizeof *length, compare_doubles);
+        usual = length[(count - 1) / 2];
+    }
+    free(length);
+    return usual;
 }
 
-/* Its own range, or that of all panels of the same axes where they share it. */
+/* Its own range, or that of all panels of the same axes that share it. */
 static range extent(const plot *p, size_t number, coordinate *of) {
     const panel *on = &p->panel[number];
     range r = own_extent(p, number, on->span_x, of), all = r;
-    double least = r.high - r.low;
-    for (int pass = 0; pass < 2 && p->same_ranges > 0; pass++)
-        for (size_t i = 0; i < p->panels; i++) {
-            range other = own_extent(p, i, on->span_x, of);
-            double length = other.high - other.low;
-            if (!are_alike(on, &p->panel[i]) || length < 0)
-                continue;
-            if (pass == 0)
-                least = fmin(least, length);
-            else if (is_shared(p, length, least)) {
-                widen(&all, other.low);
-                widen(&all, other.high);
-            }
+    if (p->same_ranges == 0)
+        return r;
+    double most = isinf(p->same_ranges)
+                      ? INFINITY
+                      : p->same_ranges * usual_length(p, number, of);
+    if (r.high - r.low > most)
+        return r;
+    for (size_t i = 0; i < p->panels; i++) {
+        range other = own_extent(p, i, on->span_x, of);
+        if (other.low <= other.high && other.high - other.low <= most &&
+            are_alike(on, &p->panel[i])) {
+            widen(&all, other.low);
+            widen(&all, other.high);
         }
-    return is_shared(p, r.high - r.low, least) ? all : r;
+    }
+    return all;
 }
 
 static const double digits[] = {1, 1.5, 2, 3, 4, 5, 6, 8, 10};

@@ -94,17 +94,17 @@ static void print_one(FILE *f, const series *s, const plot_look *l,
 }
 
 /* A series without points is an entry of the legend at most; letters are too
-   coarse for guides.  Dots of the legend are as large as one can see. */
+   coarse for guides.  Dots of the legend are large enough to be in_legend. */
 static void print_series(FILE *f, const plot *p, size_t i, bool here,
                          bool titled, bool text, size_t *printed) {
     const series *s = &p->series[i];
     bool drawn = here && s->count;
     if (text && (s->form == PLOT_GUIDE || s->form == PLOT_LEVEL))
         return;
-    plot_look look = plot_look_of(p, s), seen = look;
-    if (seen.mark)
-        seen.size = fmax(seen.size, PLOT_USUAL_SIZE);
-    bool together = drawn && seen.size <= look.size;
+    plot_look look = plot_look_of(p, s), in_legend = look;
+    if (in_legend.mark)
+        in_legend.size = fmax(in_legend.size, PLOT_USUAL_SIZE);
+    bool together = drawn && in_legend.size <= look.size;
     if (drawn) {
         char data[48];
         snprintf(data, sizeof data, "$series%zu using 1:2", i + 1);
@@ -113,7 +113,7 @@ static void print_series(FILE *f, const plot *p, size_t i, bool here,
     }
     if (titled && !together) {
         separate(f, printed);
-        print_one(f, s, &seen, NULL, s->name, text);
+        print_one(f, s, &in_legend, NULL, s->name, text);
     }
     if (drawn && look.mark && look.edge)
         fprintf(f,

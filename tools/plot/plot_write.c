@@ -159,30 +159,31 @@ static void copy(FILE *drawing, FILE *f) {
         putc(c, f);
 }
 
-/* PNG of more than PLOT_MOST_BYTES again with fewer pixels: of lines it takes bytes in
-   proportion to its scale, or to the square of it where they lie close. */
-static int draw_small(const plot *p, const target *t, FILE *drawing) {
-    enum { ATTEMPTS = 4 };
-    target fewer = *t;
-    fewer.scale = 2;
-    int status = draw_to(p, &fewer, drawing);
-    for (int i = 1; i < ATTEMPTS && !status && t->medium == PLOT_PNG; i++) {
+/* Draws PNG of more than PLOT_MOST_BYTES again with fewer pixels; lines take bytes
+   in proportion to the scale, or to its square where they lie close.
+   t  its scale is that of the drawing */
+static int draw_small(const plot *p, target *t, FILE *drawing) {
+    static const double least = 0.75; /* letters of ten pixels */
+    t->scale = 2;
+    int status = draw_to(p, t, drawing);
+    while (!status && t->medium == PLOT_PNG && t->scale > least) {
         struct stat found;
         if (fstat(fileno(drawing), &found) != 0 ||
             found.st_size <= PLOT_MOST_BYTES)
             break;
-        fewer.scale *=
-            fmax(0.5, 0.95 * sqrt(PLOT_MOST_BYTES / (double)found.st_size));
+        double share = PLOT_MOST_BYTES / (double)found.st_size;
+        t->scale = fmax(least, t->scale * fmin(0.9, 0.95 * sqrt(share)));
         if (ftruncate(fileno(drawing), 0) != 0)
-            return tool_refuse("no temporary file: %s", strerror(errno));
+            return tool_refuse("the temporary file cannot be emptied: %s",
+                               strerror(errno));
         rewind(drawing);
-        status = draw_to(p, &fewer, drawing);
+        status = draw_to(p, t, drawing);
     }
     return status;
 }
 
 /* In a file between: gnuplot reports no error of writing, and it may be a device. */
-static int draw_between(const plot *p, const target *t, FILE *f) {
+static int draw_between(const plot *p, target *t, FILE *f) {
     FILE *drawing = tmpfile();
     if (!drawing)
         return tool_refuse("no temporary file: %s", strerror(errno));
@@ -194,14 +195,14 @@ static int draw_between(const plot *p, const target *t, FILE *f) {
     return status;
 }
 
-static int draw_in_terminal(const plot *p, const target *t) {
+static int draw_in_terminal(const plot *p, target *t) {
     int status = draw_between(p, t, stdout);
     if (!status && (fflush(stdout) || ferror(stdout)))
         return tool_refuse("the plot cannot be written: %s", strerror(errno));
     return status;
 }
 
-static int draw_to_file(const plot *p, const char *file, const target *t) {
+static int draw_to_file(const plot *p, const char *file, target *t) {
     output out;
     if (output_open(&out, file))
         return TOOL_USAGE;
@@ -214,7 +215,7 @@ static int draw_to_file(const plot *p, const char *file, const target *t) {
 }
 
 /* Both for a page where a narrow one is wanted, which is smaller. */
-static int draw(const plot *p, const options *o, const target *t) {
+static int draw(const plot *p, const options *o, target *t) {
     enum { OF_PAGE = 40000 };
     if (in_terminal(o))
         return draw_in_terminal(p, t);
@@ -223,6 +224,7 @@ static int draw(const plot *p, const options *o, const target *t) {
     narrow = broad;
     narrow.narrow = true;
     int status = draw_to_file(p, o->plot.file, &broad);
+    t->scale = broad.scale;
     return status || !o->plot.narrow ? status
                                      : draw_to_file(p, o->plot.narrow, &narrow);
 }
@@ -247,8 +249,8 @@ int plot_write(plot *p, const options *o) {
         /* A report shows the table alone. */
         return p->hidden && o->as_html ? TOOL_OK : refused;
     }
-    int status = o->plot.script ? keep_script(p, o, t) : TOOL_OK;
-    if (!status && o->plot.file)
-        status = draw(p, o, &t);
+    int status = o->plot.file ? draw(p, o, &t) : TOOL_OK;
+    if (!status && o->plot.script)
+        status = keep_script(p, o, t);
     return status;
 }

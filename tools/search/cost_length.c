@@ -62,7 +62,7 @@ static int run_to(lengths *l, const search *s, size_t k) {
     return status;
 }
 
-/* Of each scheme one step, which costs as much as verlet's. */
+/* Runs each scheme with one step, which costs as much as verlet's. */
 static int run_lengths(lengths *l, const options *o) {
     row_list first = rows_of(&l->plan);
     int status = TOOL_OK;
@@ -157,7 +157,7 @@ static table *records_of(const lengths *l) {
     return t;
 }
 
-/* The first of the two runs between which `to` comes to err less than `from`, for good;
+/* The first of the two runs between which `to` comes to err less than `from` in all longer ones;
    LENGTHS: there are none, or they cross more than once. */
 static size_t find_crossing(const lengths *l, size_t from, size_t to) {
     size_t at = 0;
@@ -166,7 +166,10 @@ static size_t find_crossing(const lengths *l, size_t from, size_t to) {
     for (size_t k = at; k < LENGTHS; k++)
         if (!(error_at(l, from, k) > error_at(l, to, k)))
             return LENGTHS;
-    return at > 0 && at < LENGTHS ? at - 1 : LENGTHS;
+    bool within = at > 0 && at < LENGTHS;
+    return within && isfinite(error_at(l, from, at)) && error_at(l, to, at) > 0
+               ? at - 1
+               : LENGTHS;
 }
 
 /* Between two runs, on lines through logarithms; NAN: none. */
@@ -301,8 +304,16 @@ static int choose_end(plan *p, const options *o) {
         plan_shorten(p, cost_budget(o));
     int status = plan_reference(p, p->t_end);
     if (!status && !o->t_end && p->by_state && p->reference &&
-        p->t_end > nevh_reference_horizon(p->reference))
-        p->t_end = within * nevh_reference_horizon(p->reference);
+        p->t_end > nevh_reference_horizon(p->reference)) {
+        double begin = p->run->t_start;
+        p->t_end =
+            begin + within * (nevh_reference_horizon(p->reference) - begin);
+        nevh_reference_free(p->reference);
+        free(p->no_reference);
+        p->reference = NULL;
+        p->no_reference = NULL;
+        status = plan_reference(p, p->t_end);
+    }
     if (!status && p->by_state)
         status = plan_require_reference(p);
     return !status && o->observable ? plan_observe(p, o->observable) : status;
