@@ -94,7 +94,7 @@ static void print_one(FILE *f, const series *s, const plot_look *l,
 }
 
 /* A series without points is an entry of the legend at most; letters are too
-   coarse for guides.  Dots of the legend are large enough to be in_legend. */
+   coarse for guides.  Dots of the legend are large enough to be seen. */
 static void print_series(FILE *f, const plot *p, size_t i, bool here,
                          bool titled, bool text, size_t *printed) {
     const series *s = &p->series[i];

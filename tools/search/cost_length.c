@@ -157,8 +157,8 @@ static table *records_of(const lengths *l) {
     return t;
 }
 
-/* The first of the two runs between which `to` comes to err less than `from` in all longer ones;
-   LENGTHS: there are none, or they cross more than once. */
+/* The first of the two runs between which `to` comes to err less than `from`, as in all
+   longer ones; LENGTHS: there are none, or they cross more than once. */
 static size_t find_crossing(const lengths *l, size_t from, size_t to) {
     size_t at = 0;
     while (at < LENGTHS && error_at(l, from, at) < error_at(l, to, at))
