@@ -120,6 +120,7 @@ libnevh_core_la_SOURCES = \
 	lib/taylor/graph.c \
 	lib/taylor/derive.c \
 	lib/taylor/edges.c \
+	lib/taylor/jumps.c \
 	lib/taylor/domain.c \
 	lib/taylor/series_private.h \
 	lib/taylor/series_text.h \

@@ -39,6 +39,9 @@ typedef struct {
     const double *from;              /* n: from there */
     double *until, *energy; /* by state: time, and the motion's so far */
     double kinetic, start;
+    double h, size; /* at the start: H, and the sum of its terms' sizes */
+    bool constant;  /* H does not change along an orbit */
+    bool lost;      /* but it has, by more than all energies before */
     size_t count;
 } motion;
 
@@ -71,11 +74,31 @@ static double range_of(const motion *m) {
     return most;
 }
 
+/* True from where on H, which is constant, has changed by more than all energies before:
+   where it jumps, no orbit is followed. */
+static bool loses_energy(motion *m) {
+    double h = 0, size = 0;
+    for (size_t i = 0; i < m->values->n_terms; i++) {
+        h += m->now[i];
+        size += fabs(m->now[i]);
+    }
+    if (m->count == 0) {
+        m->h = h;
+        m->size = size;
+    }
+    static const double part =
+        0.1; /* of all terms: more than a scheme's error */
+    double most = m->count ? fmax(m->size, m->energy[m->count - 1]) : size;
+    m->lost =
+        m->lost || (m->constant && fabs(h - m->h) > fmax(most, part * size));
+    return m->lost;
+}
+
 static void energy_scale_look(void *context, double t, double h,
                               const double y[]) {
     motion *m = context;
     (void)h;
-    if (m->count == MOST || !values_of(m, t, y, m->now))
+    if (m->count == MOST || !values_of(m, t, y, m->now) || loses_energy(m))
         return;
     for (size_t i = 0; i < m->values->n_terms; i++) {
         m->low[i] = m->count ? fmin(m->low[i], m->now[i]) : m->now[i];
@@ -148,7 +171,11 @@ static bool energy_scale_follow(motion *m, double t, const double q[],
    orbit from there on.  0 where the orbit cannot be followed, or grows without end. */
 static double orbit_energy(nevh_field *values, double t, const double q[],
                            const double p[]) {
-    motion m = {.values = values, .start = t};
+    motion m = {.values = values,
+                .start = t,
+                .constant =
+                    nevh_system_traits(values->system) & NEVH_AUTONOMOUS &&
+                    !nevh_system_friction(values->system, NULL)};
     double *state = nevh__array(4 * values->n, sizeof *state);
     fenv_t own; /* as in nevh_stepper_new */
     feholdexcept(&own);

@@ -11,6 +11,7 @@
 #include <fenv.h>
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 enum { MOST_HALVES = 36, COMPARED = 4, POINTS = 7 };
 /* Third differences, over those COMPARED halves before: between 2^-12 and 2^-8. */
@@ -114,5 +115,47 @@ bool nevh__kink_between(nevh_field *f, double t, const double from[],
     bool found = has_kink(&l, largest);
     fesetenv(&own);
     f->report = (nevh__report){0}; /* where H is not finite */
+    return found;
+}
+
+/* A length over which a variable of a state varies little. */
+static double little(size_t n, size_t k, const double z[], double part) {
+    double most = fabs(z[k]);
+    const double *half = k < n ? z : z + n;
+    for (size_t i = 0; z[k] == 0 && i < n; i++)
+        most = fmax(most, fabs(half[i]));
+    return part * (most > 0 ? most : 1);
+}
+
+/* True if H is the same on both sides of the variable's conjugate: the variable rests,
+   at least for a while. */
+static bool rests(line *l, const double z[], size_t k, double room[]) {
+    static const double part = 0x1p-10, alike = 1e-13;
+    size_t n = l->field->n, other = k < n ? n + k : k - n;
+    double value[2], by = little(n, other, z, part);
+    for (int side = 0; side < 2; side++) {
+        memcpy(room, z, 2 * n * sizeof *room);
+        room[other] += side ? by : -by;
+        l->from = l->to = room;
+        value[side] = value_at(l, 0);
+    }
+    return fabs(value[1] - value[0]) <= alike * l->size;
+}
+
+bool nevh__kink_at_rest(nevh_field *f, double t, const double z[],
+                        double room[]) {
+    static const double part = 0x1p-22;
+    size_t n = f->n;
+    line l = {.field = f, .t = t, .state = room};
+    double *from = room + 2 * n, *to = room + 4 * n;
+    bool found = false;
+    for (size_t k = 0; k < 2 * n && !found; k++) {
+        memcpy(from, z, 2 * n * sizeof *from);
+        memcpy(to, z, 2 * n * sizeof *to);
+        from[k] -= little(n, k, z, part);
+        to[k] += 2 * little(n, k, z, part); /* not at the middle */
+        found = nevh__kink_between(f, t, from, to, INFINITY, room) &&
+                rests(&l, z, k, from);
+    }
     return found;
 }

@@ -1,5 +1,6 @@
 /* nevh: references: exact solutions and runs.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "diagnose/kinks_private.h"
 #include "diagnose/reference_private.h"
 #include <fenv.h>
 #include <float.h>
@@ -208,6 +209,23 @@ static int use_exact_or_series(nevh_reference *r, bool *kept) {
                : use_exact(r, kept);
 }
 
+/* Runs with two steps agree there, each by the kink's derivative at one place. */
+static int refuse_kink_at_rest(nevh_reference *r) {
+    nevh_options values = {.gradient = &nevh__no_gradient};
+    nevh_field *f = nevh_field_new(r->system, &values);
+    double *room = nevh__array(6 * r->n, sizeof *room);
+    bool made = f && room && !nevh_field_status(f);
+    bool rests = made && nevh__kink_at_rest(f, r->t0, r->start, room);
+    nevh_field_free(f);
+    free(room);
+    if (!made)
+        return nevh__no_memory(&r->report);
+    return rests ? nevh__fail(&r->report, NEVH_EDOM,
+                              "the orbit starts at rest on a kink or a jump of "
+                              "H, from where more than one orbit may go on")
+                 : NEVH_OK;
+}
+
 static int use_run(nevh_reference *r) {
     bool asked = r->integrator == nevh_taylor;
     int status =
@@ -221,6 +239,8 @@ static int use_run(nevh_reference *r) {
         r->integrator =
             nevh_system_friction(r->system, NULL) ? nevh_dop853 : nevh_gauss12;
     status = nevh__reference_run(r);
+    if (!status)
+        status = refuse_kink_at_rest(r);
     if (status && isfinite(r->ends))
         r->report = ended, status = ended.status;
     size_t used = strlen(r->text);

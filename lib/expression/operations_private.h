@@ -37,8 +37,8 @@
       .at_edge = "a function of a quotient, which has a pole there,")          \
     X(ARITHMETIC, POWER, "^", 2, NEVH__F(pow)(a, b),                           \
       NEVH__G(nevh__chain(b, NEVH__F(pow)(a, b - 1))),                         \
-      NEVH__G(nevh__chain(y, NEVH__F(log)(a))),                                \
-      .by_a = {"b a b 1 - ^ *"}, .by_b = {"a log y *"},                        \
+      NEVH__G(nevh__chain(y, NEVH__F(log)(NEVH__L(fabs)(a)))),                 \
+      .by_a = {"b a b 1 - ^ *"}, .by_b = {"a abs log y *"},                    \
       .at_edge = "a power that is no whole number, whose base reaches 0,")     \
     X(ARITHMETIC, NEGATE, "-", 1, -a, -g, 0,                                   \
       .by_a = {"1 neg"}, .exact = true)                                        \
@@ -130,12 +130,12 @@
     X(KINK, MOD, "mod", 2, NEVH__H(mod)(a, b), g, NEVH__G(-rint((a - y) / b)), \
       .by_a = {"1"}, .by_b = {"a b / floor neg"},                              \
       .as = "a b a b / floor * -", .lanewise = true, .usage = "(a, b)",        \
-      .edge = "a b / 3.14159265358979323846 * sin",                            \
+      .edge = "a b / a b / floor - 1 a b / a b / floor - - *",                 \
       .at_edge = "mod(...), whose first argument reaches a multiple of the "   \
                  "second,")                                                    \
     X(KINK, FLOOR, "floor", 1, NEVH__L(floor)(a), NEVH__G(0), 0,               \
       .by_a = {"0"}, .lanewise = true, .exact = true,                          \
-      .edge = "a 3.14159265358979323846 * sin",                                \
+      .edge = "a a floor - 1 a a floor - - *",                                 \
       .at_edge = "floor(...), whose argument reaches a whole number,")         \
     X(SPECIAL, BESSEL_J0, "bessel_j0", 1, NEVH__S(bessel_j0)(a),               \
       NEVH__G(-nevh__bessel_j1(a)), 0, .usage = 0)                                      \

@@ -93,7 +93,8 @@ static bool timing_jumps(nevh_timing *m, double before, double after,
     for (size_t i = 0; i < s->count; i++) {
         double by = fabs(s->range[i].low - m->before[i]);
         double part = by / (isfinite(m->range[i]) ? m->range[i] : 1);
-        if (s->part[i].outer && part > most)
+        if (s->part[i].outer && part > most &&
+            nevh__time_parts_jump(s, s->part[i].effect, before, after))
             most = part, *effect = s->part[i].effect;
     }
     return most > certain_jump;

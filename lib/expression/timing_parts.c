@@ -216,15 +216,24 @@ void nevh__time_parts_clear(parts *m) {
     memset(m, 0, sizeof *m);
 }
 
+/* A variable at one of some states around that of the parts, which is the first. */
+static double beside_state(double x, size_t k, int state) {
+    static const double golden = 0.6180339887498949;
+    double turn = (double)(k + 1) * state * golden;
+    return x + (state ? (turn - floor(turn) - 0.5) * (1 + fabs(x)) : 0);
+}
+
 static double timing_parts_sample(const parts *m,
-                                  const struct nevh__time_sampled *s,
-                                  double t) {
+                                  const struct nevh__time_sampled *s, double t,
+                                  int state) {
     const nevh_term *term = s->term;
     double *q = m->gathered, *p = q + term->nq;
     for (size_t k = 0; k < term->nq; k++)
-        q[k] = m->q[term->q[s->instance * term->nq + k]];
+        q[k] =
+            beside_state(m->q[term->q[s->instance * term->nq + k]], k, state);
     for (size_t k = 0; k < term->np; k++)
-        p[k] = m->p[term->p[s->instance * term->np + k]];
+        p[k] = beside_state(m->p[term->p[s->instance * term->np + k]],
+                            term->nq + k, state);
     const double *c = term->nc ? term->c + s->instance * term->nc : NULL;
     return term->value(t, q, p, c, term->params);
 }
@@ -242,7 +251,8 @@ static nevh__range sampled_range(const parts *m,
                 ? 0
                 : 0.8 * (i * golden + low - floor(i * golden + low) - 0.5);
         double t = low + (high - low) * (i + off) / SAMPLES;
-        double h = timing_parts_sample(m, s, t), by = (h - last) / (t - before);
+        double h = timing_parts_sample(m, s, t, 0),
+               by = (h - last) / (t - before);
         r.low = fmin(r.low, h);
         r.high = fmax(r.high, h);
         if (t > before && isfinite(by)) {
@@ -287,4 +297,40 @@ void nevh__time_parts_over(parts *m, double low, double high) {
         m->range[i] = node_range(m, &m->graph->nodes[i], low, high);
     for (size_t i = 0; i < m->n_sampled; i++)
         m->range[m->nodes + i] = sampled_range(m, &m->sampled[i], low, high);
+}
+
+/* 1 if values differ by more than those of equal times beside do, 0 if not, -1 if one is
+   not finite. */
+static int sample_jumps(const parts *m, const struct nevh__time_sampled *s,
+                        double before, double after, int state) {
+    static const double beside = 16, rounding = 1e-13;
+    double gap = after - before, h[4];
+    for (int i = 0; i < 4; i++)
+        h[i] = timing_parts_sample(m, s, before + (i - 1) * gap, state);
+    double by = fabs(h[2] - h[1]);
+    double most = beside * fmax(fabs(h[1] - h[0]), fabs(h[3] - h[2])) +
+                  rounding * (fabs(h[1]) + fabs(h[2]));
+    return isfinite(by + most) ? by > most : -1;
+}
+
+bool nevh__time_parts_jump(const parts *m, size_t effect, double before,
+                           double after) {
+    enum { STATES = 8, INSTANCES = 64 };
+    bool any = false;
+    for (size_t i = 0; i < m->system->n_terms; i++) {
+        const nevh__term_entry *entry = m->system->terms[i];
+        struct nevh__time_sampled s = {.term = &entry->decl};
+        if (!nevh__term_on(m->system, entry) || entry->effect != effect ||
+            !entry->decl.time)
+            continue;
+        for (; s.instance < entry->decl.count && s.instance < INSTANCES;
+             s.instance++)
+            for (int state = 0; state < STATES; state++) {
+                int jumps = sample_jumps(m, &s, before, after, state);
+                if (jumps == 1)
+                    return true;
+                any |= jumps == 0;
+            }
+    }
+    return !any;
 }

@@ -44,5 +44,9 @@ void nevh__time_parts_init_between(nevh__time_parts *, const nevh_system *,
 void nevh__time_parts_clear(nevh__time_parts *);
 /* The ranges of all parts over a stretch of time. */
 void nevh__time_parts_over(nevh__time_parts *, double low, double high);
+/* True if terms of an effect differ before and after a time, at the state or at others
+   around it: parts that jump may be read in whole periods, or cancel. */
+bool nevh__time_parts_jump(const nevh__time_parts *, size_t effect,
+                           double before, double after);
 
 #endif

@@ -117,6 +117,35 @@ static bool follows(const trial *x, size_t lane, double step,
     return true;
 }
 
+/* True if values at the states and at opposite ones differ as those of a form do.  A
+   function that jumps may have the derivatives of a form at all states. */
+static bool has_no_jumps(const trial *x, const double form[]) {
+    size_t n = NEVH__LANES * x->nv, p = NEVH__LANES * x->term->decl.nq;
+    double value[2][NEVH__LANES];
+    for (int side = 0; side < 2; side++) {
+        for (size_t k = 0; k < n; k++)
+            x->beside[k] = side ? -x->z[k] : x->z[k];
+        nevh__term_values(x->term, false, NEVH__LANES, NEVH__LANES, x->t,
+                          x->beside, x->beside + p, x->c, x->h, x->one);
+        for (size_t i = 0; i < NEVH__LANES; i++)
+            value[side][i] = x->h[i];
+    }
+    for (size_t i = 0; i < NEVH__LANES; i++) {
+        double off = value[0][i] - value[1][i], part;
+        double size = fabs(value[0][i]) + fabs(value[1][i]);
+        for (size_t k = 0; k < x->nv; k++) {
+            const double *row = form + k * (x->nv + 1);
+            double z = x->z[k * NEVH__LANES + i];
+            linear(x, i, row, &part);
+            off -= 2 * row[x->nv] * z;
+            size += fabs(z) * part;
+        }
+        if (!(fabs(off) <= roundings * DBL_EPSILON * size))
+            return false;
+    }
+    return true;
+}
+
 bool nevh__form_find(const nevh__term_entry *term, size_t instance,
                      double form[], double room[]) {
     static const int powers[TRIALS] = {-20, 0, 20, 45};
@@ -132,6 +161,8 @@ bool nevh__form_find(const nevh__term_entry *term, size_t instance,
         for (size_t lane = 0; lane < NEVH__LANES; lane++)
             if (!follows(&x, lane, length, form))
                 return false;
+        if (!has_no_jumps(&x, form))
+            return false;
     }
     return true;
 }

@@ -5,12 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Within the rounding of a few operations. */
-static bool is_same(nevh__wide x, nevh__wide y) {
-    nevh__wide apart = x < y ? y - x : x - y;
-    return apart <= NEVH__WIDE_ROUNDING * (x < 0 ? -x : x);
-}
-
 static bool is_whole(const nevh__graph *g, int node) {
     nevh__wide x;
     return nevh__graph_is_number(g, node, &x) && (double)x == x &&
@@ -42,10 +36,9 @@ static bool edges_has(nevh__graph *g, const nevh__graph_edge *e) {
     uint8_t *watched = &g->nodes[e->node].watched;
     if (e->steep)
         return has_steep(g, e);
-    bool jumps = e->also >= 0 || e->whole >= 0; /* may be forgotten later */
+    bool jumps = e->jump >= 0; /* may be forgotten later */
     for (size_t i = 0; jumps && i < g->n_edges; i++)
-        if (g->edges[i].node == e->node && g->edges[i].also == e->also &&
-            g->edges[i].whole == e->whole)
+        if (g->edges[i].node == e->node && g->edges[i].jump == e->jump)
             return true;
     if (jumps)
         return false;
@@ -103,7 +96,7 @@ static void watch_power(nevh__graph *g, unsigned operation, int a, int b,
     if (order > least || order < -least_pole)
         edges_add(g, (nevh__graph_edge){.node = base,
                                         .also = -1,
-                                        .whole = -1,
+                                        .jump = -1,
                                         .steep = true,
                                         .function = NEVH__POWER,
                                         .exponent = power,
@@ -115,15 +108,18 @@ static void watch_steep(nevh__graph *g, unsigned operation, int a, int b,
                         const char *effect) {
     nevh__graph_edge e = {.node = a,
                           .also = -1,
-                          .whole = -1,
+                          .jump = -1,
                           .steep = true,
                           .function = (uint8_t)operation,
                           .effect = effect};
     if (a < 0 || b < 0)
         return;
     if (operation == NEVH__POWER && !nevh__graph_is_number(g, b, NULL)) {
+        nevh__wide x;
+        bool negative = nevh__graph_is_number(g, a, &x) && x < 0;
         e.function = NEVH__EXP;
-        e.node = nevh__graph_build(g, "b a log *", a, b);
+        e.node = nevh__graph_build(g, "b a log *",
+                                   negative ? nevh__graph_number(g, -x) : a, b);
     } else if (!nevh__operation_of(operation)->steep)
         return;
     edges_add(g, e);
@@ -133,7 +129,7 @@ void nevh__graph_watch(nevh__graph *g, unsigned operation, int a, int b,
                        const char *effect) {
     nevh__graph_edge e = {.node = -1,
                           .also = -1,
-                          .whole = -1,
+                          .jump = -1,
                           .strict = true,
                           .function = (uint8_t)operation,
                           .effect = effect};
@@ -144,9 +140,9 @@ void nevh__graph_watch(nevh__graph *g, unsigned operation, int a, int b,
     if (operation == NEVH__CBRT && nevh__graph_cube_root(g, a) >= 0)
         return;
     if (operation == NEVH__FLOOR)
-        e.whole = a;
+        e.jump = nevh__graph_apply(g, NEVH__FLOOR, a, a);
     if (operation == NEVH__MOD)
-        e.whole = nevh__graph_build(g, "a b /", a, b);
+        e.jump = nevh__graph_build(g, "a b / floor", a, b);
     if (f->edge) {
         e.strict = !f->touches;
         e.node = nevh__graph_build(g, f->edge, a, b);
@@ -156,95 +152,36 @@ void nevh__graph_watch(nevh__graph *g, unsigned operation, int a, int b,
     } else if (operation == NEVH__ATAN2) {
         e.node = a;
         e.also = b;
+        e.jump = nevh__graph_angle(g, a, b);
     }
     edges_add(g, e);
-}
-
-/* True if a function of a period, a multiple of pi, reads the jump as nothing: whole
-   periods, in all digits or in those of a double. */
-static bool is_periodic(nevh__wide jump, int of_pi) {
-    static const double most = 0x1p20;
-    nevh__wide period = of_pi * nevh__wide_pi();
-    double whole = rint((double)(jump / period));
-    nevh__wide exact = whole * period, plain = whole * (double)period;
-    return fabs(whole) <= most &&
-           (is_same(jump, exact) || is_same(jump, plain) ||
-            is_same(jump, (double)exact));
-}
-
-/* The jump of a node where its operands jump; *known is false where that is not known,
-   or H may jump. */
-static nevh__wide jump_of(const nevh__graph_node *x, const nevh__wide jump[],
-                          bool *known) {
-    nevh__wide a = x->a >= 0 ? jump[x->a] : 0, b = x->b >= 0 ? jump[x->b] : 0;
-    if (a == 0 && b == 0)
-        return 0;
-    if (x->kind == NEVH__GRAPH_ADD)
-        return a + b;
-    if (x->kind == NEVH__GRAPH_SCALE)
-        return x->number * a;
-    bool tangent = x->function == NEVH__TAN;
-    bool circular =
-        x->kind == NEVH__GRAPH_CALL &&
-        (tangent || x->function == NEVH__SIN || x->function == NEVH__COS);
-    *known = *known && circular && is_periodic(a, tangent ? 1 : 2);
-    return 0;
-}
-
-/* The jump that the function of an edge has by itself. */
-static nevh__wide first_jump(const nevh__graph_edge *e,
-                             const nevh__graph_node *x) {
-    if (x->kind != NEVH__GRAPH_CALL)
-        return 0;
-    if (e->whole >= 0)
-        return x->function == NEVH__FLOOR && x->a == e->whole;
-    return x->function == NEVH__ATAN2 && x->a == e->node && x->b == e->also
-               ? 2 * nevh__wide_pi()
-               : 0;
-}
-
-/* True if H has no jump, since sines and so on alone read what jumps, in whole
-   periods.
-   jump  zeros, before and after */
-static bool is_circular(const nevh__graph *g, int used,
-                        const nevh__graph_edge *e, nevh__wide jump[],
-                        const int roots[], size_t count) {
-    bool known = true;
-    int from = e->whole >= 0 ? e->whole : e->node, i = from;
-    for (; i < used && known; i++) {
-        const nevh__graph_node *x = &g->nodes[i];
-        jump[i] = first_jump(e, x);
-        if (jump[i] == 0)
-            jump[i] = jump_of(x, jump, &known);
-    }
-    for (size_t k = 0; k < count && known; k++)
-        known = jump[roots[k]] == 0;
-    memset(jump + from, 0, (size_t)(i - from) * sizeof *jump);
-    return known;
 }
 
 /* The end of the cut of atan2 is left, a pole of derivatives; no edge of floor or mod
    is. */
 void nevh__graph_join_cuts(nevh__graph *g, const int roots[], size_t count) {
-    int used = g->used;
-    nevh__wide *jump = nevh__array((size_t)used, sizeof *jump);
-    g->failed = g->failed || !jump;
-    size_t kept = 0;
-    for (size_t i = 0; i < g->n_edges && !g->failed; i++) {
+    size_t kept = 0, n = g->n_edges;
+    unsigned char *jumps = nevh__array(n + 1, 1);
+    g->failed = g->failed || !jumps;
+    bool any = false;
+    for (size_t i = 0; i < n; i++)
+        any = any || g->edges[i].jump >= 0;
+    if (any && !g->failed)
+        nevh__graph_find_jumps(g, roots, count, jumps);
+    for (size_t i = 0; i < n && !g->failed; i++) {
         nevh__graph_edge e = g->edges[i];
-        bool joined = (e.also >= 0 || e.whole >= 0) &&
-                      is_circular(g, used, &e, jump, roots, count);
+        bool joined = e.jump >= 0 && !jumps[i];
         if (joined && e.also >= 0) {
             e.node = nevh__graph_build(g, "a a * b b * +", e.node, e.also);
-            e.also = -1;
+            e.also = e.jump = -1;
             e.function = NEVH__DIVIDE;
         }
-        if (!joined || (e.whole < 0 && e.node >= 0))
+        if (!joined || (e.jump < 0 && e.node >= 0))
             g->edges[kept++] = e;
     }
     if (!g->failed)
         g->n_edges = kept;
-    free(jump);
+    free(jumps);
 }
 
 /* Poles are no edges by themselves: 1/x is as analytic behind 0 as before, and
@@ -310,7 +247,7 @@ void nevh__graph_watch_poles(nevh__graph *g, const char *effect) {
                                                                  x.a, x.a)
                                              : x.a,
                              .also = -1,
-                             .whole = -1,
+                             .jump = -1,
                              .strict = true,
                              .function = tangent ? NEVH__TAN : NEVH__DIVIDE,
                              .effect = effect});

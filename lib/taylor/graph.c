@@ -373,6 +373,12 @@ static int graph_slope_of(nevh__graph *g, nevh__derivative_text by,
                      : top;
 }
 
+int nevh__graph_angle(nevh__graph *g, int a, int b) {
+    bool known =
+        nevh__graph_is_number(g, a, NULL) && nevh__graph_is_number(g, b, NULL);
+    return known || bad(g, a, b) ? -1 : raw_call(g, NEVH__ATAN2, 0, a, b);
+}
+
 /* Two halves that have one argument each. */
 static int call_of_two(nevh__graph *g, nevh__tape_operation f, int a, int b) {
     const nevh__operation_traits *known = nevh__operation_of(f);
@@ -402,10 +408,16 @@ static int graph_call(nevh__graph *g, nevh__tape_operation f, int a) {
     return y;
 }
 
+/* (-a)^b = cos(pi b) a^b where b has whole values, as floor. */
 static int graph_power(nevh__graph *g, int a, int b) {
     nevh__wide c;
     if (nevh__graph_is_number(g, b, &c))
         return nevh__graph_power(g, a, c);
+    if (nevh__graph_is_number(g, a, &c) && c < 0)
+        return nevh__graph_multiply(
+            g,
+            graph_call(g, NEVH__COS, nevh__graph_scale(g, nevh__wide_pi(), b)),
+            graph_power(g, nevh__graph_number(g, -c), b));
     return graph_build(g, "b a log * exp", (int[]){a, b, -1});
 }
 

@@ -50,9 +50,9 @@ typedef struct {
    any polynomial, and may be lost in rounding at its beginning. */
 typedef struct {
     int node, also; /* also: of atan2, whose node is y, x; else -1 */
-    int whole;      /* the argument of floor; else -1 */
-    bool strict;    /* else it may touch 0: of a root that is squared again */
-    bool steep;     /* of a function that grows so */
+    int jump;    /* the node of floor or atan2, which may jump there; else -1 */
+    bool strict; /* else it may touch 0: of a root that is squared again */
+    bool steep;  /* of a function that grows so */
     uint8_t function;
     double exponent;    /* of steep powers */
     const char *effect; /* of the system */
@@ -93,10 +93,16 @@ int nevh__graph_build(nevh__graph *, const char *formula, int a, int b);
 /* Adds what an operation on nodes asks for; its result is another node. */
 void nevh__graph_watch(nevh__graph *, unsigned operation, int a, int b,
                        const char *effect);
-/* Forgets the cuts of atan2, and the jumps of floor and mod, that sines and so on alone
-   read, in whole periods.
+/* The node of half of atan2(a, b) that has its value. */
+int nevh__graph_angle(nevh__graph *, int a, int b);
+/* Forgets the cuts of atan2, and the jumps of floor and mod, that H does not have: where
+   sines read them in whole periods, and wherever they cancel.
    roots   nodes that are H's values */
 void nevh__graph_join_cuts(nevh__graph *, const int roots[], size_t count);
+/* Which edges are jumps of H; those are, too, of which trials cannot tell.
+   jumps  out, one an edge, zeros before */
+void nevh__graph_find_jumps(nevh__graph *, const int roots[], size_t count,
+                            unsigned char jumps[]);
 /* The same of all poles that functions have been given. */
 void nevh__graph_watch_poles(nevh__graph *, const char *effect);
 bool nevh__graph_is_number(const nevh__graph *, int node, nevh__wide *value);

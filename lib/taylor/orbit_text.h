@@ -119,12 +119,15 @@ static int fail_at_edge(const orbit *o, double t, nevh__report *report) {
     if (edge == SIZE_MAX)
         return NEVH_OK;
     nevh__domain_words(o->recurrence, edge, why, sizeof why);
-    return nevh__fail(report, o->ended ? NEVH_EFAILED : NEVH_EDOM,
-                      o->ended
-                          ? "the solution itself ends at t = %.9g: it "
-                            "changes without bound there, with %s"
-                          : "the series ends near t = %.9g: " NEVH__SERIES_EDGE,
-                      t, why);
+    bool first = o->count <= 1;
+    return nevh__fail(
+        report, o->ended ? NEVH_EFAILED : NEVH_EDOM,
+        o->ended ? "the solution itself ends at t = %.9g: it "
+                   "changes without bound there, with %s"
+        : first
+            ? "there is no series at the start, t = %.9g: " NEVH__SERIES_EDGE
+            : "the series ends near t = %.9g: " NEVH__SERIES_EDGE,
+        t, why);
 }
 
 /* No further than what changes with time allows, and up to the next break. */

@@ -169,6 +169,27 @@ TEST_EACH(jumps_are_found, JUMPS) {
     tear_down(&s);
 }
 
+/* From rest on a kink more than one orbit may go on: runs agree on one of them. */
+static const struct {
+    const char *start, *effects;
+    bool rests;
+} edges[] = {
+    {"x = 1", "T = p_x^2/2\nV = (x - floor(x) - 0.5)^2", true},
+    {"x = 1", "T = p_x^2/2\nV = (x - 1)^2 - abs(x - 1)", true},
+    {"x = 0, 1e-9", "T = p_x^2/2 + abs(p_x - 1e-9)\nV = x^4", true},
+    {"x = 1, 0.5", "T = p_x^2/2\nV = abs(x - 1) + x^2/8", false},
+    {"x = 1.001", "T = p_x^2/2\nV = abs(x - 1) + x^2/8", false},
+};
+
+TEST_EACH(rest_on_a_kink_is_refused, sizeof edges / sizeof *edges) {
+    setup s = refer(edges[_i].start, edges[_i].effects, 0.5, NULL);
+    const char *message = nevh_reference_message(s.reference);
+    ck_assert_msg(!strstr(message, "starts at rest on a kink") ==
+                      !edges[_i].rests,
+                  "%s", message);
+    tear_down(&s);
+}
+
 /* A scheme of low order: as good as can be afforded, and it says how good. */
 TEST(poor_schemes_are_poor_references) {
     nevh_reference_options o = {.integrator = nevh_euler};

@@ -98,6 +98,11 @@ static const struct {
     {"x/(t-4.7)", 0, 0, 1, 4.7},
     {"x*cos(t)", 0, 0, 0, 0},
     {"max(x, cos(t))", 0, 0, 0, 0}, /* where it breaks depends on x */
+    {"x*(-1)^floor(t/3 + 0.1)", 3, 0, 0, 2.7},
+    /* what jumps is read in whole periods */
+    {"cos(x - 2*pi*mod(t + 0.75, 1))", 0, 10, 0, 0.25},
+    {"cos(x - 2*pi*mod(t + 0.75, 1)) + 1e-9*x*floor(t/5 + 0.15)", 2, 8, 0,
+     0.25},
 };
 
 TEST_EACH(breaks_are_found, sizeof broken / sizeof *broken) {

@@ -135,7 +135,7 @@ printf '%s\n' '[coordinates]' 'x = 0' '[effects]' 'T = p_x^2/2' \
     'V = abs(x)^3 - 0.3*x*cos(t)' '[run]' 't_end = 20' 'dt = 0.01' >$work/kink.nevh
 exits 0 check $work/kink.nevh --integrators verlet
 has '^  smooth  *no '
-has 'near t = 0: abs\(\.\.\.\), whose argument reaches 0, in effect "V" is not'
+has 'at the start, t = 0: abs\(\.\.\.\), whose argument reaches 0, in effect "V" is not'
 exits 0 compare $work/kink.nevh --integrators verlet --format csv
 has '^# H is not smooth on the orbit .*abs\(\.\.\.\), whose argument .* effect "V"'
 exits 0 compare pendulum --integrators verlet --format csv
@@ -187,6 +187,12 @@ lacks 'not conserved'
 # Parts are told of forces that are finite: B is empty in Kepler's problem, and not at
 # the edge of the domain of a root.
 has '^# +B is 0: steps of any length are exact'
+for jump in '0.3*floor(x)' 'mod(x, 1)'; do
+    printf '[coordinates]\nx = 0.3\np_x = 1\n[effects]\nK = p_x^2/2\nV = %s\n[run]\nt_end = 9\n' \
+        "$jump" >$work/jump.nevh
+    exits 0 check $work/jump.nevh --integrators saba2 --dt 0.1 --format csv
+    lacks 'steps of any length are exact|flow is exact: K, V'
+done
 printf '[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = sqrt(1 - x^2)\n%s\n' \
     '[run]
 t_end = 1

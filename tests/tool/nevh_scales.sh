@@ -90,6 +90,10 @@ scene 0 0 0 "x = 0;y = 1, 1e-13" \
 "$nevh" compare $work/scene.nevh --integrators verlet --gradient exact \
     --dt 0.1 --t-end 20 >$work/out 2>&1
 grep -Eq '^energy_scale: [0-9.]+e-0[67] ' $work/out || { fails "idle"; cat $work/out; }
+# Nor do energies that jumps of H give to a run.
+scene 0 0 0 "x = 0.3, 2" "K = p_x^2/2;V = cos(mod(x, 2*pi)/2)"
+"$nevh" compare $work/scene.nevh --integrators verlet >$work/out 2>&1
+grep -q '^energy_scale: 2\.98877108 ' $work/out || { fails "jumps"; cat $work/out; }
 scene 0 0 0 "x = 1e-4" "K = p_x^2/2;V = 5 + x^2/2 + cos(x)"
 "$nevh" compare $work/scene.nevh --integrators verlet >$work/out 2>&1
 grep -q '^energy_scale: 1 ' $work/out || { fails "flat"; cat $work/out; }

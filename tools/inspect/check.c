@@ -25,7 +25,13 @@ static smoothness smoothness_finding(const plan *p, const nevh_probe *probe,
     char *why = NULL;
     smoothness on_way = smoothness_on_way(p, &why);
     nevh_finding f = nevh_probe_finding(probe, NEVH_IS_SMOOTH);
-    if (on_way == SMOOTHNESS_UNKNOWN || (on_way == SMOOTHNESS_ALL) == f.holds)
+    bool timed = !(nevh_system_traits(p->system) & NEVH_AUTONOMOUS);
+    bool agree =
+        on_way == SMOOTHNESS_UNKNOWN || (on_way == SMOOTHNESS_ALL) == f.holds;
+    if (agree && f.holds && timed)
+        list_print(notes, "  %-24s yes  %.1e  %.1e  in q and p",
+                   nevh_question_name(NEVH_IS_SMOOTH), f.evidence, f.limit);
+    else if (agree)
         finding_notes(probe, NEVH_IS_SMOOTH, notes);
     else
         list_print(notes,

@@ -1,0 +1,210 @@
+/* nevh: jumps of floor and of atan2 that H does not have.
+
+   H(z; n) depends on a jump n, which H has where its value, or that of a derivative,
+   differs between n and the next n.  Both are tried at states here and there, in wide
+   numbers.  Numbers of H are as exact as those of a double, such as 2 pi: what a change
+   of their last digit explains is no difference.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "taylor/graph_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    COPIES = 3
+}; /* the numbers as they are, and changed in their last digit */
+
+/* Values at one state. */
+typedef struct {
+    nevh__graph *g;
+    int used;
+    nevh__wide *plain, *shifted; /* COPIES a node; shifted: of changed nodes */
+    int *last;                   /* the last node that reads a node */
+    unsigned char *changed, *is_root;
+    double work;
+} states;
+
+/* From 0 to 1. */
+static double scatter(uint64_t seed) {
+    seed = (seed + 1) * 0x9e3779b97f4a7c15u;
+    seed = (seed ^ seed >> 30) * 0xbf58476d1ce4e5b9u;
+    seed = (seed ^ seed >> 27) * 0x94d049bb133111ebu;
+    return (double)((seed ^ seed >> 31) >> 11) * 0x1p-53;
+}
+
+/* A variable at a state, from 2^-4 to 2^10. */
+static double scattered(size_t at, int state) {
+    enum { LEAST = -4, SPAN = 14, SPREAD = 4 };
+    uint64_t seed = 2 * ((uint64_t)at << 8 | (unsigned)state);
+    double scale = LEAST + (SPAN - SPREAD) * scatter((uint64_t)state << 40);
+    double x = 2 * scatter(seed) - 1;
+    return copysign(exp2(scale + SPREAD * fabs(x)), scatter(seed + 1) - 0.5);
+}
+
+/* 1, but in a changed copy of number i. */
+static nevh__wide last_digit(int i, int copy) {
+    double x =
+        scatter(((uint64_t)i << 4 | (unsigned)copy) + (1ull << 60)) - 0.5;
+    return copy ? 1 + (nevh__wide)((x + copysign(0.5, x)) * 0x1p-51) : 1;
+}
+
+static const nevh__wide *jumps_values(const states *s, int i) {
+    return (s->changed[i] ? s->shifted : s->plain) + COPIES * (size_t)i;
+}
+
+static nevh__wide jumps_operate(const nevh__graph_node *x, int i, int copy,
+                                nevh__wide a, nevh__wide b) {
+    switch (x->kind) {
+    case NEVH__GRAPH_NUMBER:
+        return x->number * last_digit(i, copy);
+    case NEVH__GRAPH_ADD:
+        return a + b;
+    case NEVH__GRAPH_SCALE:
+        return x->number * last_digit(i, copy) * a;
+    case NEVH__GRAPH_MULTIPLY:
+        return a * b;
+    case NEVH__GRAPH_INVERT:
+        return 1 / a;
+    case NEVH__GRAPH_POWER:
+        return nevh__operation_wide(NEVH__POWER, a, x->number);
+    default:
+        return x->function == NEVH__NOTHING
+                   ? 0
+                   : nevh__operation_wide(x->function, a, b);
+    }
+}
+
+static void jumps_evaluate(const states *s, int i, nevh__wide to[]) {
+    const nevh__graph_node *x = &s->g->nodes[i];
+    for (int copy = 0; copy < COPIES; copy++) {
+        nevh__wide a = x->a >= 0 ? jumps_values(s, x->a)[copy] : 0;
+        nevh__wide b = x->b >= 0 ? jumps_values(s, x->b)[copy] : a;
+        to[copy] = jumps_operate(x, i, copy, a, b);
+    }
+}
+
+static nevh__wide size_of(nevh__wide x) {
+    return x < 0 ? -x : x;
+}
+
+/* True if values differ by no more than rounding and the numbers of H explain. */
+static bool jumps_same(const nevh__wide x[], const nevh__wide y[]) {
+    static const double roundings = 256, digits = 16;
+    nevh__wide apart = y[0] - x[0], spread = 0;
+    for (int copy = 1; copy < COPIES; copy++) {
+        nevh__wide off = size_of(y[copy] - x[copy] - apart);
+        spread = off > spread ? off : spread;
+    }
+    return size_of(apart) <=
+           digits * spread + roundings * NEVH__WIDE_ROUNDING *
+                                 (size_of(x[0]) + size_of(y[0]));
+}
+
+/* True if a factor of 0 hides what changes, and may not do so at other states. */
+static bool hides(const states *s, const nevh__graph_node *x) {
+    return x->kind == NEVH__GRAPH_MULTIPLY &&
+           ((!s->changed[x->a] && jumps_values(s, x->a)[0] == 0) ||
+            (!s->changed[x->b] && jumps_values(s, x->b)[0] == 0));
+}
+
+typedef enum { NO_JUMP, JUMP, NOT_FINITE } verdict;
+
+/* Evaluates what reads a node that has been shifted, as long as something changes. */
+static verdict follow_jump(states *s, int from, int *until) {
+    verdict found = NO_JUMP;
+    for (int i = from + 1; i <= *until && found == NO_JUMP; i++) {
+        const nevh__graph_node *x = &s->g->nodes[i];
+        nevh__wide *to = s->shifted + COPIES * (size_t)i,
+                   *before = s->plain + COPIES * (size_t)i;
+        s->work++;
+        if (!(x->a >= 0 && s->changed[x->a]) &&
+            !(x->b >= 0 && s->changed[x->b]))
+            continue;
+        jumps_evaluate(s, i, to);
+        if (to[0] - to[0] != 0 || before[0] - before[0] != 0)
+            found = NOT_FINITE;
+        else if (hides(s, x) || (s->is_root[i] && !jumps_same(before, to)))
+            found = JUMP;
+        else if (!jumps_same(before, to)) {
+            s->changed[i] = 1;
+            *until = s->last[i] > *until ? s->last[i] : *until;
+        }
+    }
+    return found;
+}
+
+static verdict jumps_at_state(states *s, const nevh__graph_edge *e) {
+    int from = e->jump, until = s->last[from];
+    bool whole = s->g->nodes[from].function == NEVH__FLOOR;
+    for (int copy = 0; copy < COPIES; copy++)
+        s->shifted[COPIES * (size_t)from + copy] =
+            s->plain[COPIES * (size_t)from + copy] +
+            (whole ? 1 : 2 * nevh__wide_pi());
+    s->changed[from] = 1;
+    verdict found = s->is_root[from] ? JUMP : follow_jump(s, from, &until);
+    memset(s->changed + from, 0, (size_t)(until - from) + 1);
+    return found;
+}
+
+/* The value of all nodes. */
+static void go_to_state(states *s, int state) {
+    for (int i = 0; i < s->used; i++) {
+        const nevh__graph_node *x = &s->g->nodes[i];
+        nevh__wide *to = s->plain + COPIES * (size_t)i;
+        if (x->kind == NEVH__GRAPH_VARIABLE)
+            for (int copy = 0; copy < COPIES; copy++)
+                to[copy] = scattered(x->at, state);
+        else
+            jumps_evaluate(s, i, to);
+    }
+    s->work += COPIES * (double)s->used;
+}
+
+static bool jumps_make(states *s, const int roots[], size_t count) {
+    size_t used = (size_t)s->used;
+    s->plain = nevh__array(COPIES * used, sizeof *s->plain);
+    s->shifted = nevh__array(COPIES * used, sizeof *s->shifted);
+    s->last = nevh__array(used, sizeof *s->last);
+    s->changed = nevh__array(used, 1);
+    s->is_root = nevh__array(used, 1);
+    if (!s->plain || !s->shifted || !s->last || !s->changed || !s->is_root)
+        return false;
+    for (int i = 0; i < s->used; i++) {
+        const nevh__graph_node *x = &s->g->nodes[i];
+        s->last[i] = i;
+        if (x->a >= 0)
+            s->last[x->a] = i;
+        if (x->b >= 0)
+            s->last[x->b] = i;
+    }
+    for (size_t k = 0; k < count; k++)
+        s->is_root[roots[k]] = 1;
+    return true;
+}
+
+void nevh__graph_find_jumps(nevh__graph *g, const int roots[], size_t count,
+                            unsigned char jumps[]) {
+    enum { MOST = 24, LEAST = 6 };
+    static const double most_work = 2e7;
+    states s = {.g = g, .used = g->used};
+    bool made = jumps_make(&s, roots, count);
+    for (int state = 0; made && state < MOST && s.work < most_work; state++) {
+        go_to_state(&s, state);
+        for (size_t k = 0; k < g->n_edges && s.work < most_work; k++)
+            if (g->edges[k].jump >= 0 && jumps[k] < MOST) {
+                verdict found = jumps_at_state(&s, &g->edges[k]);
+                jumps[k] = (unsigned char)(found == JUMP
+                                               ? MOST + 1
+                                               : jumps[k] + (found == NO_JUMP));
+            }
+    }
+    /* From how many states each is known, so far. */
+    for (size_t k = 0; k < g->n_edges; k++)
+        jumps[k] = jumps[k] < LEAST || jumps[k] > MOST;
+    g->failed = g->failed || !made;
+    free(s.plain);
+    free(s.shifted);
+    free(s.last);
+    free(s.changed);
+    free(s.is_root);
+}
