@@ -116,7 +116,10 @@ size_t orbit_follow_reference(orbit *o, nevh_reference *r, size_t columns,
     size_t n = o->plan.n;
     filler f = {o, fill, data};
     double *q = tool_allocate(2 * n, sizeof *q), *p = q + n;
-    double begin = o->plan.run->t_start, span = o->plan.t_end - begin;
+    double begin = o->plan.run->t_start;
+    double span = o->plan.t_end - begin,
+           until = nevh_reference_horizon(r) - begin;
+    span = fabs(until) < fabs(span) ? until : span;
     forget(o);
     o->rows = thinned_new(columns + 1);
     o->q = tool_allocate(n, sizeof *o->q);

@@ -164,12 +164,12 @@ static size_t orbit_series(const portrait_job *j, const orbits_of *o,
     char *name = members_start(&j->members, &j->plan, member);
     size_t series = plot_series(to, name);
     if (j->members.count > 1)
-        plot_member(to, series, member);
+        plot_member(to, series, member, j->members.count);
     else {
         plot_style(to, series, PLOT_DOTS);
         plot_integrator(to, series, o->integrator);
+        plot_size(to, series, 0.6);
     }
-    plot_size(to, series, 0.6);
     free(name);
     return series;
 }

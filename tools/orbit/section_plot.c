@@ -83,12 +83,11 @@ static void add_panel(plot **to, const plan *p, const nevh_scene_section *decl,
 /* A series an orbit. */
 static void draw_members(plot *to, const column *x, const column *y,
                          const size_t member[], const list *names) {
-    size_t series = 0;
+    size_t series = 0, members = x->points ? member[x->points - 1] + 1 : 0;
     for (size_t k = 0; k < x->points; k++) {
         for (size_t i = k ? member[k - 1] + 1 : 0; i <= member[k]; i++) {
             series = plot_series(to, names ? names->item[i] : NULL);
-            plot_member(to, series, i);
-            plot_size(to, series, 0.6);
+            plot_member(to, series, i, members);
         }
         plot_point(to, series, value(x, k), value(y, k));
     }

@@ -189,10 +189,15 @@ void plot_integrator(plot *p, size_t number, const char *name) {
     own->look = look;
 }
 
-void plot_member(plot *p, size_t number, size_t member) {
-    enum { COLOURS = 8 };
+void plot_member(plot *p, size_t number, size_t member, size_t members) {
+    enum { COLOURS = 8, MARKS = 2 };
+    static const double usual = 0.6, least = 0.3;
+    bool many = members > MARKS * COLOURS; /* rings would hide each other */
+    double share = many ? (double)(MARKS * COLOURS) / (double)members : 1;
+    bool ring = !many && member / COLOURS % 2;
     plot_set_look(p, number, member % COLOURS);
-    plot_style(p, number, member / COLOURS % 2 ? PLOT_RINGS : PLOT_DOTS);
+    plot_style(p, number, ring ? PLOT_RINGS : PLOT_DOTS);
+    plot_size(p, number, fmax(least, usual * sqrt(share)));
 }
 
 static void add(series *s, pair point) {

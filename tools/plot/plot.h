@@ -67,9 +67,9 @@ const char *plot_colour_of(size_t look);
    the picture, such as with another step, has the same colour. */
 void plot_set_look(plot *, size_t series, size_t look);
 void plot_integrator(plot *, size_t series, const char *name);
-/* The series has the points of one orbit of many: 16 of them differ in colour, or in
-   that dots are rings. */
-void plot_member(plot *, size_t series, size_t member);
+/* The series has the points of one orbit of several: up to 16 differ in colour, or in
+   that dots are rings; more have small dots. */
+void plot_member(plot *, size_t series, size_t member, size_t members);
 /* So many panels side by side, small ones where they are many. */
 void plot_columns(plot *, size_t columns);
 /* Panels are wide, one below the other, over one axis. */

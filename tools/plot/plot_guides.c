@@ -70,7 +70,11 @@ static guide_name place_at(const series *s, const plot_screen *on, double width,
         last.x + share * (first.x - last.x) + side - (side < 0 ? width : 0);
     double y = last.y + share * (first.y - last.y) +
                (is_point ? 1.2 * PLOT_NOTE_FONT * lines : 0);
-    return (guide_name){x, x + width, y, s->name};
+    return (guide_name){.left = x,
+                        .right = x + width,
+                        .middle = y,
+                        .text = s->name,
+                        .from = last};
 }
 
 /* The first place within the picture and over no other name, nor, if need be, over a
@@ -81,7 +85,8 @@ static bool place_beside(const plot *p, const series *s, const plot_screen *on,
     enum { AWAY = 4 };
     double width = 0.6 * PLOT_NOTE_FONT * (double)plot_letters(s->name);
     size_t places = apart ? PLACES * SIDES : PLACES;
-    for (size_t n = 0; n < places; n++) {
+    size_t first = apart || s->count > 1 ? 0 : 2; /* off the disc */
+    for (size_t n = first; n < places; n++) {
         *to = place_at(s, on, width, n);
         bool within = to->left > AWAY && to->middle > AWAY &&
                       to->middle < on->height - AWAY;
@@ -92,11 +97,29 @@ static bool place_beside(const plot *p, const series *s, const plot_screen *on,
     return false;
 }
 
+/* Joins a name to its point where it is farther away than others may be. */
+static void join_name(guide_name *name) {
+    static const double near = 24, disc = 10; /* pixels */
+    pair *to = &name->to;
+    *to = (pair){fmin(fmax(name->from.x, name->left), name->right),
+                 fmin(fmax(name->from.y, name->middle - PLOT_NOTE_FONT / 2.),
+                      name->middle + PLOT_NOTE_FONT / 2.)};
+    double x = to->x - name->from.x, y = to->y - name->from.y;
+    double distance = hypot(x, y);
+    name->far = distance > near;
+    if (name->far)
+        name->from = (pair){name->from.x + disc * x / distance,
+                            name->from.y + disc * y / distance};
+}
+
 static bool place_name(const plot *p, const series *s, const plot_screen *on,
                        double right, const guide_name *others, size_t count,
                        guide_name *to) {
-    return place_beside(p, s, on, right, true, others, count, to) ||
-           place_beside(p, s, on, right, false, others, count, to);
+    bool placed = place_beside(p, s, on, right, true, others, count, to) ||
+                  place_beside(p, s, on, right, false, others, count, to);
+    if (placed && s->count < 2)
+        join_name(to);
+    return placed;
 }
 
 size_t plot_guide_names(const plot *p, size_t number, const layout *l,

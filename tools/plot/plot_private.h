@@ -230,6 +230,8 @@ int plot_look_mark(size_t look);
 typedef struct {
     double left, right, middle;
     const char *text;
+    bool far; /* from the point that it names: a line joins them, */
+    pair from, to;
 } guide_name;
 size_t plot_guide_names(const plot *, size_t panel, const layout *,
                         guide_name names[]);

@@ -191,7 +191,7 @@ static void print_legend(FILE *f, const plot *p, const layout *l, bool text) {
             "set tmargin at screen %.6f\nset bmargin at screen 0\n",
             plot_legend_at(l).x / l->width,
             1 - plot_legend_at(l).y / l->height);
-    fputs("unset logscale\nunset border\nunset tics\nunset label\n"
+    fputs("unset logscale\nunset border\nunset tics\nunset label\nunset arrow\n"
           "set xlabel ''\nset ylabel ''\nset title ''\n"
           "set xrange [0:1]\nset yrange [0:1]\n",
           f);
@@ -213,7 +213,7 @@ static void print_picture(FILE *f, const plot *p, const layout *l, bool text,
     for (size_t i = 0; i < p->panels; i++) {
         bool legend = i == 0 && l->legend > 0 && !apart;
         if (i)
-            fputs("unset label\n", f);
+            fputs("unset label\nunset arrow\n", f);
         if (!text)
             plot_script_guides(f, p, i, l);
         print_place(f, i, l);
@@ -238,6 +238,6 @@ void plot_script(const plot *p, const target *t, FILE *f) {
     for (; p; p = p->next) {
         print_picture(f, p, &l, text, !text && t->medium != PLOT_GIF);
         if (p->next)
-            fputs("unset label\n", f);
+            fputs("unset label\nunset arrow\n", f);
     }
 }

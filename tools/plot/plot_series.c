@@ -134,6 +134,14 @@ void plot_script_guides(FILE *f, const plot *p, size_t number,
                 "textcolor rgb '#777777' font ',%d'\n",
                 names[i].left / l->panel_width,
                 names[i].middle / l->panel_height, PLOT_NOTE_FONT);
+        if (names[i].far)
+            fprintf(f,
+                    "set arrow from graph %.6f,%.6f to graph %.6f,%.6f nohead "
+                    "linecolor rgb '#999999' linewidth 0.8\n",
+                    names[i].from.x / l->panel_width,
+                    names[i].from.y / l->panel_height,
+                    names[i].to.x / l->panel_width,
+                    names[i].to.y / l->panel_height);
     }
     free(names);
 }

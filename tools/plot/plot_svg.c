@@ -167,10 +167,20 @@ static void put_guides(FILE *f, const plot *p, size_t number, pair at,
     size_t count = plot_guide_names(p, number, l, names);
     for (size_t i = 0; i < count; i++) {
         char *text = plot_shortened(names[i].text, PLOT_LONGEST_NAME);
+        fputs("<g paint-order='stroke' stroke='#ffffff' stroke-width='3'>", f);
         put_text(f, at.x + names[i].left,
                  at.y + l->panel_height - names[i].middle +
                      middle_line * PLOT_NOTE_FONT,
                  START, PLOT_NOTE_FONT, "#777777", text);
+        fputs("</g>\n", f);
+        if (names[i].far)
+            fprintf(f,
+                    "<path stroke='#999999' stroke-width='.8' d='M%.1f "
+                    "%.1fL%.1f %.1f'/>\n",
+                    at.x + names[i].from.x,
+                    at.y + l->panel_height - names[i].from.y,
+                    at.x + names[i].to.x,
+                    at.y + l->panel_height - names[i].to.y);
         free(text);
     }
     free(names);

@@ -263,8 +263,12 @@ void plot_svg_series(FILE *f, const plot *p, const series *s,
     plot_thinning how = l.many                           ? THIN_DOTS
                         : l.opacity > 0 || l.dash[0] > 0 ? THIN_LINE
                                                          : THIN_SOLID;
+    static const double fine = 0.3; /* of few lines, which stay smooth */
+    plot_screen screen = *on;
+    if (s->form == PLOT_SEPARATRIX || s->form == PLOT_LEVEL)
+        screen.detail = fmin(screen.detail, fine);
     pair *seen = tool_allocate(2 * s->count, sizeof *seen);
-    size_t count = plot_thin(on, how, s->point, s->count, seen);
+    size_t count = plot_thin(&screen, how, s->point, s->count, seen);
     if (l.opacity > 0)
         put_areas(f, &l, on, at, seen, count);
     else if (l.width > 0)

@@ -163,7 +163,7 @@ static void copy(FILE *drawing, FILE *f) {
    in proportion to the scale, or to its square where they lie close.
    t  its scale is that of the drawing */
 static int draw_small(const plot *p, target *t, FILE *drawing) {
-    static const double least = 0.75; /* letters of ten pixels */
+    static const double least = 0.65; /* letters of nine pixels */
     t->scale = 2;
     int status = draw_to(p, t, drawing);
     while (!status && t->medium == PLOT_PNG && t->scale > least) {
