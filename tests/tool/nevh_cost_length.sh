@@ -51,6 +51,14 @@ column state_error rk4 >>$work/errors
 awk 'NR == 1 { v = $1 } NR == 2 { exit !($1 / v < 1.2 && $1 / v > 0.8) }' $work/errors ||
     fails "at t = $t errors are $(tr '\n' ' ' <$work/errors)"
 
+# Any two schemes may cross, each pair once; a run that the budget shortens says so.
+exits 0 cost pendulum --against length --t-end 400 --integrators rk4,ralston,ralston,gauss6
+test "$(grep -c '^rk4 errs less than gauss6 ' $work/out)" = 1 || fails "rk4 and gauss6"
+lacks 'shortened|ralston errs less than ralston'
+exits 0 cost pendulum --against length --integrators verlet,rk4 --budget 0.001
+has '^shortened, .*--t-end 1000 '
+exits 2 cost pendulum --against length --by energy --observable phi
+
 exits 0 cost pendulum --against length --t-end 100 --integrators verlet,rk4 \
     --plot $work/length.svg
 grep -q 'end of the run' $work/length.svg || fails "the picture does not name its axis"

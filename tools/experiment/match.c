@@ -84,6 +84,7 @@ bool match_unmatched(const plan *p, const row *r) {
 bool match_dearer(const plan *p, const row *r) {
     double steps = (r->t_end - p->run->t_start) / r->nominal_dt;
     return p->match_work && r->ran && r->tolerance == 0 &&
+           nevh_integrator_explicit(r->scheme) == NEVH_NO &&
            (double)r->counts.gradients > 1.1 * steps + 1;
 }
 

@@ -275,10 +275,9 @@ void plan_free(plan *p) {
     free(p->p);
     nevh_timing_free(p->timing);
     nevh_timing_free(p->jumps);
-    nevh_reference_free(p->reference);
+    plan_forget_reference(p);
     energies_free(p->energies);
     stepper_cache_free(p->steppers);
-    free(p->no_reference);
     nevh_scene_free(p->scene);
 }
 

@@ -56,6 +56,8 @@ char *plan_title(const nevh_scene *, const char *name, const options *);
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int plan_make(plan *, const options *);
 void plan_free(plan *);
+/* Frees the reference, so that another can be made. */
+void plan_forget_reference(plan *);
 /* A field for values of H; to be freed. */
 nevh_field *plan_values(const plan *);
 double plan_longest_dt(const plan *);  /* 0: no dt is given */

@@ -64,6 +64,13 @@ int plan_reference(plan *p, double end) {
     return TOOL_OK;
 }
 
+void plan_forget_reference(plan *p) {
+    nevh_reference_free(p->reference);
+    free(p->no_reference);
+    p->reference = NULL;
+    p->no_reference = NULL;
+}
+
 /* True if the run goes on after the horizon of the reference. */
 static bool is_beyond(const plan *p) {
     return p->reference &&

@@ -304,6 +304,9 @@ static int cost_plan(const options *o, plan *p, double whole) {
 static int cost(const options *o) {
     plan p;
     double whole = NAN;
+    if (o->observable && option_given(o, "by") && !o->search.by)
+        return tool_refuse("--by energy compares energies, and --observable "
+                           "what it names: take one of them");
     if (o->search.against)
         return cost_lengths(o);
     int status = plan_make(&p, o);

@@ -16,6 +16,9 @@ typedef struct {
     row *row; /* LENGTHS of each scheme, the shortest first */
     size_t schemes;
     double end[LENGTHS];
+    double
+        given; /* the scene's end, where the budget or the reference shortens the
+                     run; else NAN */
 } lengths;
 
 static const row *row_at(const lengths *l, size_t scheme, size_t k) {
@@ -55,10 +58,8 @@ static int run_to(lengths *l, const search *s, size_t k) {
         if (r->ran && whole)
             rows_time(&part, &r, 1, s->repeats ? s->repeats : ROUNDS, false);
     }
-    if (!whole) {
-        nevh_reference_free(part.reference);
-        free(part.no_reference);
-    }
+    if (!whole)
+        plan_forget_reference(&part);
     return status;
 }
 
@@ -208,33 +209,32 @@ static double crossing(const lengths *l, size_t from, size_t to) {
     return error < useless ? t : NAN;
 }
 
-static bool is_symplectic(const lengths *l, size_t scheme) {
-    return nevh_integrator_symplectic(row_at(l, scheme, 0)->scheme) == NEVH_YES;
-}
-
 static void crossing_word(const lengths *l, size_t from, size_t to,
                           list *words) {
     const row *a = row_at(l, from, 0), *b = row_at(l, to, 0);
     bool several = l->plan.gradients.count > 1;
     double t = crossing(l, from, to);
+    if (!isfinite(t))
+        return;
     char *rounded = text_print("%.2g", t);
-    if (isfinite(t))
-        list_print(
-            words,
-            "%s errs less than %s%s%s up to t = %g%s, and more from then on",
-            a->integrator, b->integrator, several ? " with " : "",
-            several ? a->gradient : "", strtod(rounded, NULL),
-            t > l->end[LENGTHS - 1] ? ", if both go on growing so (no run "
-                                      "is as long)"
-                                    : "");
+    char *text = text_print(
+        "%s errs less than %s%s%s up to t = %g%s, and more from then on",
+        a->integrator, b->integrator, several ? " with " : "",
+        several ? a->gradient : "", strtod(rounded, NULL),
+        t > l->end[LENGTHS - 1] ? ", if both go on growing so (no run "
+                                  "is as long)"
+                                : "");
+    if (!list_has(words, text))
+        list_add(words, text);
+    free(text);
     free(rounded);
 }
 
-/* One of each pair is symplectic; both have one gradient. */
+/* Both of a pair have one gradient. */
 static void crossing_words(const lengths *l, list *words) {
     for (size_t i = 0; i < l->schemes; i++)
         for (size_t j = 0; j < l->schemes; j++)
-            if (is_symplectic(l, i) != is_symplectic(l, j) &&
+            if (i != j &&
                 row_at(l, i, 0)->gradient == row_at(l, j, 0)->gradient)
                 crossing_word(l, i, j, words);
 }
@@ -243,6 +243,11 @@ static page page_of(const lengths *l, const options *o) {
     page result = {.table =
                        o->format == FORMAT_TABLE ? table_of(l) : records_of(l)};
     plan_notes(&l->plan, &result.before);
+    if (l->given > l->plan.t_end)
+        list_print(&result.before,
+                   "shortened, so that the reference and all schemes can be "
+                   "run; --t-end %g runs all of it",
+                   l->given);
     list_print(&result.before, "digits: -log10 of the largest error of the %s",
                l->plan.observable ? "observable"
                : l->plan.by_state ? "orbit"
@@ -298,8 +303,10 @@ static void choose_step(plan *p, const options *o) {
 }
 
 /* Unless the end is given, one within the reach of the reference. */
-static int choose_end(plan *p, const options *o) {
+static int choose_end(lengths *l, const options *o) {
     static const double within = 0.9;
+    plan *p = &l->plan;
+    l->given = o->t_end ? NAN : p->t_end;
     if (!o->t_end)
         plan_shorten(p, cost_budget(o));
     int status = plan_reference(p, p->t_end);
@@ -308,10 +315,7 @@ static int choose_end(plan *p, const options *o) {
         double begin = p->run->t_start;
         p->t_end =
             begin + within * (nevh_reference_horizon(p->reference) - begin);
-        nevh_reference_free(p->reference);
-        free(p->no_reference);
-        p->reference = NULL;
-        p->no_reference = NULL;
+        plan_forget_reference(p);
         status = plan_reference(p, p->t_end);
     }
     if (!status && p->by_state)
@@ -325,9 +329,9 @@ int cost_lengths(const options *o) {
     int status = plan_make(p, o);
     if (!status) {
         p->match_work = true;
-        p->by_state = !option_given(o, "by") || o->search.by || o->observable;
+        p->by_state = !option_given(o, "by") || o->search.by;
         choose_step(p, o);
-        status = choose_end(p, o);
+        status = choose_end(&l, o);
         double begin = p->run->t_start, span = p->t_end - begin;
         for (int k = 0; k < LENGTHS; k++)
             l.end[k] = begin + span / pow(FACTOR, LENGTHS - 1 - k);

@@ -157,8 +157,7 @@ static void verify_pilots(recommendation *a) {
 static void verify(recommendation *a, plan *p) {
     p->t_end = a->search.plan.t_end = a->whole;
     if (p->reference) {
-        nevh_reference_free(p->reference);
-        p->reference = NULL;
+        plan_forget_reference(p);
         plan_reference(p, p->t_end);
         a->search.plan.reference = p->reference;
         a->search.plan.reference_end = p->reference_end;

@@ -91,10 +91,8 @@ void recommend_follow(recommendation *a, plan *p) {
     plan longer = longer_plan(a);
     for (size_t i = 0; i < count && !a->not_longer; i++)
         follow(a, &longer, recommend_chosen(a, found[i]));
-    if (a->search.plan.by_state) {
-        nevh_reference_free(longer.reference);
-        free(longer.no_reference);
-    }
+    if (a->search.plan.by_state)
+        plan_forget_reference(&longer);
     whole->error_bounds = true;
     find_period(a);
 }
