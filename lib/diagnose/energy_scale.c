@@ -41,7 +41,7 @@ typedef struct {
     double kinetic, start;
     double h, size; /* at the start: H, and the sum of its terms' sizes */
     bool constant;  /* H does not change along an orbit */
-    bool lost;      /* but it has, by more than all energies before */
+    bool lost;      /* but it has changed */
     size_t count;
 } motion;
 
@@ -74,8 +74,8 @@ static double range_of(const motion *m) {
     return most;
 }
 
-/* True from where on H, which is constant, has changed by more than all energies before:
-   where it jumps, no orbit is followed. */
+/* True once H, which is constant, has changed by more than all energies before: it
+   jumps, and what follows is no orbit. */
 static bool loses_energy(motion *m) {
     double h = 0, size = 0;
     for (size_t i = 0; i < m->values->n_terms; i++) {

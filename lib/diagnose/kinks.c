@@ -118,44 +118,61 @@ bool nevh__kink_between(nevh_field *f, double t, const double from[],
     return found;
 }
 
-/* A length over which a variable of a state varies little. */
-static double little(size_t n, size_t k, const double z[], double part) {
-    double most = fabs(z[k]);
+/* H at a state of which one variable is off. */
+static double value_off(line *l, const double z[], size_t k, double by) {
+    double *off = l->state + 2 * l->field->n;
+    memcpy(off, z, 2 * l->field->n * sizeof *off);
+    off[k] += by;
+    l->from = l->to = off;
+    return value_at(l, 0);
+}
+
+/* Its size, or that of the largest of its half, or 1. */
+static double scale_of(size_t n, size_t k, const double z[]) {
     const double *half = k < n ? z : z + n;
+    double most = fabs(z[k]);
     for (size_t i = 0; z[k] == 0 && i < n; i++)
         most = fmax(most, fabs(half[i]));
-    return part * (most > 0 ? most : 1);
+    return most > 0 ? most : 1;
+}
+
+/* True if the second difference is in proportion to the step: of smooth functions it is
+   to its square, and rounding is to none. */
+static bool has_kink_at(line *l, const double z[], size_t k) {
+    enum { STEPS = 3 };
+    static const double shorter = 0x1p-4, first = 0x1p-9;
+    double middle = value_off(l, z, k, 0), met[STEPS];
+    double step = first * scale_of(l->field->n, k, z);
+    for (int i = 0; i < STEPS; i++, step *= shorter)
+        met[i] = fabs(value_off(l, z, k, step) - 2 * middle +
+                      value_off(l, z, k, -step));
+    bool kink = met[STEPS - 1] > 0;
+    for (int i = 1; i < STEPS; i++)
+        kink = kink && met[i] > met[i - 1] * shorter / 2 &&
+               met[i] < met[i - 1] * shorter * 2;
+    return kink;
 }
 
 /* True if H is the same on both sides of the variable's conjugate: the variable rests,
    at least for a while. */
-static bool rests(line *l, const double z[], size_t k, double room[]) {
-    static const double part = 0x1p-10, alike = 1e-13;
+static bool rests(line *l, const double z[], size_t k) {
+    static const double roundings = 16;
     size_t n = l->field->n, other = k < n ? n + k : k - n;
-    double value[2], by = little(n, other, z, part);
-    for (int side = 0; side < 2; side++) {
-        memcpy(room, z, 2 * n * sizeof *room);
-        room[other] += side ? by : -by;
-        l->from = l->to = room;
-        value[side] = value_at(l, 0);
-    }
-    return fabs(value[1] - value[0]) <= alike * l->size;
+    double by = scale_of(n, other, z);
+    double apart =
+        fabs(value_off(l, z, other, by) - value_off(l, z, other, -by));
+    return apart <= roundings * DBL_EPSILON * l->size;
 }
 
 bool nevh__kink_at_rest(nevh_field *f, double t, const double z[],
                         double room[]) {
-    static const double part = 0x1p-22;
-    size_t n = f->n;
     line l = {.field = f, .t = t, .state = room};
-    double *from = room + 2 * n, *to = room + 4 * n;
     bool found = false;
-    for (size_t k = 0; k < 2 * n && !found; k++) {
-        memcpy(from, z, 2 * n * sizeof *from);
-        memcpy(to, z, 2 * n * sizeof *to);
-        from[k] -= little(n, k, z, part);
-        to[k] += 2 * little(n, k, z, part); /* not at the middle */
-        found = nevh__kink_between(f, t, from, to, INFINITY, room) &&
-                rests(&l, z, k, from);
-    }
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
+    for (size_t k = 0; k < 2 * f->n && !found; k++)
+        found = rests(&l, z, k) && has_kink_at(&l, z, k);
+    fesetenv(&own);
+    f->report = (nevh__report){0}; /* where H is not finite */
     return found;
 }

@@ -15,9 +15,9 @@
 bool nevh__kink_between(nevh_field *, double t, const double from[],
                         const double to[], double largest, double room[]);
 
-/* True if a variable rests at a state and H has a kink or jumps in it there: more than
-   one orbit may go on from there.
-   room  6n */
+/* True if a variable rests at a state and H has a kink in it there: more than one orbit
+   may go on from there.
+   room  4n */
 bool nevh__kink_at_rest(nevh_field *, double t, const double z[],
                         double room[]);
 

@@ -38,7 +38,7 @@
     X(ARITHMETIC, POWER, "^", 2, NEVH__F(pow)(a, b),                           \
       NEVH__G(nevh__chain(b, NEVH__F(pow)(a, b - 1))),                         \
       NEVH__G(nevh__chain(y, NEVH__F(log)(NEVH__L(fabs)(a)))),                 \
-      .by_a = {"b a b 1 - ^ *"}, .by_b = {"a abs log y *"},                    \
+      .by_a = {"b a b 1 - ^ *"}, .by_b = {"a log y *"},                        \
       .at_edge = "a power that is no whole number, whose base reaches 0,")     \
     X(ARITHMETIC, NEGATE, "-", 1, -a, -g, 0,                                   \
       .by_a = {"1 neg"}, .exact = true)                                        \

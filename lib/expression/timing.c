@@ -86,7 +86,7 @@ static void values_at(nevh_timing *m, double t, double to[]) {
 /* True if a term differs on either side of a break; effect: out. */
 static bool timing_jumps(nevh_timing *m, double before, double after,
                          size_t *effect) {
-    const nevh__time_parts *s = &m->parts;
+    nevh__time_parts *s = &m->parts;
     double most = certain_jump;
     values_at(m, before, m->before);
     nevh__time_parts_over(&m->parts, after, after);

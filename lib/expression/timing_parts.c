@@ -2,6 +2,7 @@
    time.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/timing_parts_private.h"
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -303,7 +304,7 @@ void nevh__time_parts_over(parts *m, double low, double high) {
    not finite. */
 static int sample_jumps(const parts *m, const struct nevh__time_sampled *s,
                         double before, double after, int state) {
-    static const double beside = 16, rounding = 1e-13;
+    static const double beside = 16, rounding = 64 * DBL_EPSILON;
     double gap = after - before, h[4];
     for (int i = 0; i < 4; i++)
         h[i] = timing_parts_sample(m, s, before + (i - 1) * gap, state);
@@ -313,24 +314,35 @@ static int sample_jumps(const parts *m, const struct nevh__time_sampled *s,
     return isfinite(by + most) ? by > most : -1;
 }
 
-bool nevh__time_parts_jump(const parts *m, size_t effect, double before,
+/* The same of an instance: 1 where it jumps at some state, 0 at none, -1 not finite. */
+static int instance_jumps(const parts *m, const struct nevh__time_sampled *s,
+                          double before, double after) {
+    enum { STATES = 8 };
+    int found = -1;
+    for (int state = 0; state < STATES && found < 1; state++) {
+        int jumps = sample_jumps(m, s, before, after, state);
+        found = jumps > found ? jumps : found;
+    }
+    return found;
+}
+
+bool nevh__time_parts_jump(parts *m, size_t effect, double before,
                            double after) {
-    enum { STATES = 8, INSTANCES = 64 };
-    bool any = false;
+    enum { MOST_TRIED = 100000 }; /* instances, at all times */
+    int found = -1;
     for (size_t i = 0; i < m->system->n_terms; i++) {
         const nevh__term_entry *entry = m->system->terms[i];
         struct nevh__time_sampled s = {.term = &entry->decl};
-        if (!nevh__term_on(m->system, entry) || entry->effect != effect ||
-            !entry->decl.time)
-            continue;
-        for (; s.instance < entry->decl.count && s.instance < INSTANCES;
-             s.instance++)
-            for (int state = 0; state < STATES; state++) {
-                int jumps = sample_jumps(m, &s, before, after, state);
-                if (jumps == 1)
-                    return true;
-                any |= jumps == 0;
-            }
+        bool reads = nevh__term_on(m->system, entry) &&
+                     entry->effect == effect && entry->decl.time;
+        for (; reads && s.instance < entry->decl.count; s.instance++) {
+            int jumps = m->tried++ < MOST_TRIED
+                            ? instance_jumps(m, &s, before, after)
+                            : 1;
+            if (jumps == 1)
+                return true;
+            found = jumps > found ? jumps : found;
+        }
     }
-    return !any;
+    return found < 0;
 }

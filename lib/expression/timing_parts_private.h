@@ -30,6 +30,7 @@ typedef struct {
         size_t instance, effect;
     } sampled[NEVH__MOST_SAMPLED];
     size_t n_sampled;
+    size_t tried; /* instances, for jumps */
     double *gathered;
     bool whole;  /* nothing was left out, or is only sampled */
     bool failed; /* memory is out */
@@ -45,8 +46,9 @@ void nevh__time_parts_clear(nevh__time_parts *);
 /* The ranges of all parts over a stretch of time. */
 void nevh__time_parts_over(nevh__time_parts *, double low, double high);
 /* True if terms of an effect differ before and after a time, at the state or at others
-   around it: parts that jump may be read in whole periods, or cancel. */
-bool nevh__time_parts_jump(const nevh__time_parts *, size_t effect,
-                           double before, double after);
+   around it: parts that jump may be read in whole periods, or cancel.  True without trial
+   where there were too many. */
+bool nevh__time_parts_jump(nevh__time_parts *, size_t effect, double before,
+                           double after);
 
 #endif

@@ -117,14 +117,14 @@ static bool follows(const trial *x, size_t lane, double step,
     return true;
 }
 
-/* True if values at the states and at opposite ones differ as those of a form do.  A
-   function that jumps may have the derivatives of a form at all states. */
+/* True if values at the states and at 0 differ as those of a form do.  A function that
+   jumps may have the derivatives of a form at all states. */
 static bool has_no_jumps(const trial *x, const double form[]) {
     size_t n = NEVH__LANES * x->nv, p = NEVH__LANES * x->term->decl.nq;
     double value[2][NEVH__LANES];
     for (int side = 0; side < 2; side++) {
         for (size_t k = 0; k < n; k++)
-            x->beside[k] = side ? -x->z[k] : x->z[k];
+            x->beside[k] = side ? 0 : x->z[k];
         nevh__term_values(x->term, false, NEVH__LANES, NEVH__LANES, x->t,
                           x->beside, x->beside + p, x->c, x->h, x->one);
         for (size_t i = 0; i < NEVH__LANES; i++)
@@ -136,8 +136,7 @@ static bool has_no_jumps(const trial *x, const double form[]) {
         for (size_t k = 0; k < x->nv; k++) {
             const double *row = form + k * (x->nv + 1);
             double z = x->z[k * NEVH__LANES + i];
-            linear(x, i, row, &part);
-            off -= 2 * row[x->nv] * z;
+            off -= z * (linear(x, i, row, &part) + row[x->nv]) / 2;
             size += fabs(z) * part;
         }
         if (!(fabs(off) <= roundings * DBL_EPSILON * size))

@@ -36,17 +36,9 @@ static int derive_out_of_memory(const reader *r) {
 
 /* NULL: its series is known, up to its edge if it has one. */
 static const char *why_not(const nevh__instruction *c) {
-    const nevh__operation_traits *f = nevh__operation_of(c->operation);
-    switch (f->kind) {
-    case NEVH__KIND_KINK:
-        return f->edge ? NULL
-                       : "is not analytic, so that its derivatives say nothing "
-                         "about it elsewhere";
-    case NEVH__KIND_SPECIAL:
-        return "is one whose recurrence is not known here";
-    default:
-        return NULL;
-    }
+    return nevh__operation_of(c->operation)->kind == NEVH__KIND_SPECIAL
+               ? "is one whose recurrence is not known here"
+               : NULL;
 }
 
 static int refuse_operation(const reader *r, const nevh_term *term,

@@ -32,23 +32,19 @@ static bool has_steep(nevh__graph *g, const nevh__graph_edge *e) {
 
 /* True if a node was watched before; it is from now on. */
 static bool edges_has(nevh__graph *g, const nevh__graph_edge *e) {
-    enum { STRICT = 1, LOOSE = 2 };
-    uint8_t *watched = &g->nodes[e->node].watched;
+    enum { STRICT = 1, LOOSE = 2, JUMPS = 32 }; /* has_steep has others */
+    bool jumps = e->jump >= 0; /* may be forgotten later: on its own */
+    uint8_t *watched = &g->nodes[jumps ? e->jump : e->node].watched;
+    uint8_t mine = jumps ? JUMPS : e->strict ? STRICT : LOOSE;
     if (e->steep)
         return has_steep(g, e);
-    bool jumps = e->jump >= 0; /* may be forgotten later */
-    for (size_t i = 0; jumps && i < g->n_edges; i++)
-        if (g->edges[i].node == e->node && g->edges[i].jump == e->jump)
-            return true;
-    if (jumps)
-        return false;
-    bool had = *watched & (e->strict ? STRICT : STRICT | LOOSE);
-    *watched |= e->strict ? STRICT : LOOSE;
+    bool had = *watched & (mine == LOOSE ? STRICT | LOOSE : mine);
+    *watched |= mine;
     return had;
 }
 
 static void edges_add(nevh__graph *g, nevh__graph_edge e) {
-    if (e.node < 0 || g->failed || nevh__graph_is_number(g, e.node, NULL))
+    if (e.node < 0 || g->failed || g->nodes[e.node].degree == 0)
         return;
     if (edges_has(g, &e))
         return;

@@ -69,6 +69,9 @@ static void note_growth(const nevh__graph *g, nevh__graph_node *x) {
     x->power = 1;
     if (x->kind == NEVH__GRAPH_VARIABLE)
         x->degree = 1;
+    if (x->kind == NEVH__GRAPH_CALL &&
+        (x->function == NEVH__FLOOR || x->function == NEVH__SIGN))
+        x->degree = 0;
     if (x->kind == NEVH__GRAPH_SCALE || (product && a->base == b->base)) {
         x->base = a->base;
         x->power = a->power + b->power;
@@ -408,12 +411,30 @@ static int graph_call(nevh__graph *g, nevh__tape_operation f, int a) {
     return y;
 }
 
-/* (-a)^b = cos(pi b) a^b where b has whole values, as floor. */
+/* True if a node has whole values alone, as floor has. */
+static bool is_whole_valued(const nevh__graph *g, int i) {
+    const nevh__graph_node *x = graph_at(g, i);
+    bool whole = (double)x->number == rint((double)x->number);
+    switch (x->kind) {
+    case NEVH__GRAPH_NUMBER:
+        return whole;
+    case NEVH__GRAPH_SCALE:
+        return whole && is_whole_valued(g, x->a);
+    case NEVH__GRAPH_ADD:
+    case NEVH__GRAPH_MULTIPLY:
+        return is_whole_valued(g, x->a) && is_whole_valued(g, x->b);
+    default:
+        return x->kind == NEVH__GRAPH_CALL && x->function == NEVH__FLOOR;
+    }
+}
+
+/* (-a)^b = cos(pi b) a^b where b is whole. */
 static int graph_power(nevh__graph *g, int a, int b) {
     nevh__wide c;
     if (nevh__graph_is_number(g, b, &c))
         return nevh__graph_power(g, a, c);
-    if (nevh__graph_is_number(g, a, &c) && c < 0)
+    if (b >= 0 && nevh__graph_is_number(g, a, &c) && c < 0 &&
+        is_whole_valued(g, b))
         return nevh__graph_multiply(
             g,
             graph_call(g, NEVH__COS, nevh__graph_scale(g, nevh__wide_pi(), b)),

@@ -37,7 +37,8 @@ typedef struct {
                   order of instances */
     int rank;
     size_t at;
-    float degree; /* as a polynomial of variables */
+    float degree; /* as a polynomial of variables; 0: constant, but for jumps of
+                     others */
     int base;     /* a multiple of whose power the node is, */
     float power;  /* and which one; of itself, the first */
     nevh__wide number;
@@ -95,15 +96,14 @@ void nevh__graph_watch(nevh__graph *, unsigned operation, int a, int b,
                        const char *effect);
 /* The node of half of atan2(a, b) that has its value. */
 int nevh__graph_angle(nevh__graph *, int a, int b);
-/* Forgets the cuts of atan2, and the jumps of floor and mod, that H does not have: where
-   sines read them in whole periods, and wherever they cancel.
+/* Forgets the cuts of atan2, and the jumps of floor and mod, that H does not have.
    roots   nodes that are H's values */
 void nevh__graph_join_cuts(nevh__graph *, const int roots[], size_t count);
 /* Which edges are jumps of H; those are, too, of which trials cannot tell.
    jumps  out, one an edge, zeros before */
 void nevh__graph_find_jumps(nevh__graph *, const int roots[], size_t count,
                             unsigned char jumps[]);
-/* The same of all poles that functions have been given. */
+/* Adds the poles that functions have been given to the edges. */
 void nevh__graph_watch_poles(nevh__graph *, const char *effect);
 bool nevh__graph_is_number(const nevh__graph *, int node, nevh__wide *value);
 

@@ -1,9 +1,12 @@
 /* nevh: jumps of floor and of atan2 that H does not have.
 
-   H(z; n) depends on a jump n, which H has where its value, or that of a derivative,
-   differs between n and the next n.  Both are tried at states here and there, in wide
-   numbers.  Numbers of H are as exact as those of a double, such as 2 pi: what a change
-   of their last digit explains is no difference.
+   H(z; n) reads the value n of floor, and has no jump where H(z; n + 1) is the same
+   function of z.  Both are tried at states here and there, in wide numbers.  Sines may
+   read whole periods of the change, and two that change may cancel in a sum or product;
+   any other function that does not show the change may show it at other states.  Jumps
+   that H has of two at one place, such as floor(x + 1) - floor(x), count as jumps.
+   Numbers of H are as exact as those of a double, such as 2 pi: what a change of their
+   last digit explains is no difference.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "taylor/graph_private.h"
 #include <math.h>
@@ -20,8 +23,9 @@ typedef struct {
     int used;
     nevh__wide *plain, *shifted; /* COPIES a node; shifted: of changed nodes */
     int *last;                   /* the last node that reads a node */
-    unsigned char *changed, *is_root;
-    double work;
+    unsigned char *changed, *is_root, *is_read; /* is_read: by H */
+    nevh__wide turn;
+    double work; /* operations */
 } states;
 
 /* From 0 to 1. */
@@ -34,15 +38,17 @@ static double scatter(uint64_t seed) {
 
 /* A variable at a state, from 2^-4 to 2^10. */
 static double scattered(size_t at, int state) {
-    enum { LEAST = -4, SPAN = 14, SPREAD = 4 };
+    enum { LOWEST = -4, SPAN = 14, SPREAD = 4 };
     uint64_t seed = 2 * ((uint64_t)at << 8 | (unsigned)state);
-    double scale = LEAST + (SPAN - SPREAD) * scatter((uint64_t)state << 40);
-    double x = 2 * scatter(seed) - 1;
-    return copysign(exp2(scale + SPREAD * fabs(x)), scatter(seed + 1) - 0.5);
+    double scale = LOWEST + (SPAN - SPREAD) * scatter((uint64_t)state << 40);
+    return copysign(exp2(scale + SPREAD * scatter(seed)),
+                    scatter(seed + 1) - 0.5);
 }
 
-/* 1, but in a changed copy of number i. */
-static nevh__wide last_digit(int i, int copy) {
+/* 1, but in a changed copy of number i that is no short one, such as 3 or 0.5. */
+static nevh__wide last_digit(int i, int copy, nevh__wide number) {
+    if ((float)number == number)
+        return 1;
     double x =
         scatter(((uint64_t)i << 4 | (unsigned)copy) + (1ull << 60)) - 0.5;
     return copy ? 1 + (nevh__wide)((x + copysign(0.5, x)) * 0x1p-51) : 1;
@@ -56,11 +62,11 @@ static nevh__wide jumps_operate(const nevh__graph_node *x, int i, int copy,
                                 nevh__wide a, nevh__wide b) {
     switch (x->kind) {
     case NEVH__GRAPH_NUMBER:
-        return x->number * last_digit(i, copy);
+        return x->number * last_digit(i, copy, x->number);
     case NEVH__GRAPH_ADD:
         return a + b;
     case NEVH__GRAPH_SCALE:
-        return x->number * last_digit(i, copy) * a;
+        return x->number * last_digit(i, copy, x->number) * a;
     case NEVH__GRAPH_MULTIPLY:
         return a * b;
     case NEVH__GRAPH_INVERT:
@@ -100,14 +106,23 @@ static bool jumps_same(const nevh__wide x[], const nevh__wide y[]) {
                                  (size_of(x[0]) + size_of(y[0]));
 }
 
-/* True if a factor of 0 hides what changes, and may not do so at other states. */
-static bool hides(const states *s, const nevh__graph_node *x) {
-    return x->kind == NEVH__GRAPH_MULTIPLY &&
-           ((!s->changed[x->a] && jumps_values(s, x->a)[0] == 0) ||
-            (!s->changed[x->b] && jumps_values(s, x->b)[0] == 0));
+/* True if a change of an operand that the node does not show is none elsewhere. */
+static bool cancels(const states *s, const nevh__graph_node *x) {
+    if (x->kind == NEVH__GRAPH_ADD || x->kind == NEVH__GRAPH_MULTIPLY)
+        return s->changed[x->a] && s->changed[x->b];
+    return x->kind == NEVH__GRAPH_CALL &&
+           (x->function == NEVH__SIN || x->function == NEVH__COS ||
+            x->function == NEVH__TAN || x->function == NEVH__NOTHING);
 }
 
-typedef enum { NO_JUMP, JUMP, NOT_FINITE } verdict;
+/* True if a step function is so near a step that the last digits decide. */
+static bool is_doubtful(const nevh__graph_node *x, const nevh__wide y[]) {
+    return x->kind == NEVH__GRAPH_CALL &&
+           (x->function == NEVH__FLOOR || x->function == NEVH__SIGN) &&
+           (y[1] != y[0] || y[2] != y[0]);
+}
+
+typedef enum { NO_JUMP, JUMP, UNKNOWN } verdict;
 
 /* Evaluates what reads a node that has been shifted, as long as something changes. */
 static verdict follow_jump(states *s, int from, int *until) {
@@ -117,15 +132,18 @@ static verdict follow_jump(states *s, int from, int *until) {
         nevh__wide *to = s->shifted + COPIES * (size_t)i,
                    *before = s->plain + COPIES * (size_t)i;
         s->work++;
-        if (!(x->a >= 0 && s->changed[x->a]) &&
-            !(x->b >= 0 && s->changed[x->b]))
+        if (!s->is_read[i] || (!(x->a >= 0 && s->changed[x->a]) &&
+                               !(x->b >= 0 && s->changed[x->b])))
             continue;
         jumps_evaluate(s, i, to);
-        if (to[0] - to[0] != 0 || before[0] - before[0] != 0)
-            found = NOT_FINITE;
-        else if (hides(s, x) || (s->is_root[i] && !jumps_same(before, to)))
+        s->work += COPIES;
+        bool same = jumps_same(before, to);
+        if (to[0] - to[0] != 0 || before[0] - before[0] != 0 ||
+            is_doubtful(x, to) || is_doubtful(x, before))
+            found = UNKNOWN;
+        else if (same ? !cancels(s, x) : s->is_root[i])
             found = JUMP;
-        else if (!jumps_same(before, to)) {
+        else if (!same) {
             s->changed[i] = 1;
             *until = s->last[i] > *until ? s->last[i] : *until;
         }
@@ -138,15 +156,14 @@ static verdict jumps_at_state(states *s, const nevh__graph_edge *e) {
     bool whole = s->g->nodes[from].function == NEVH__FLOOR;
     for (int copy = 0; copy < COPIES; copy++)
         s->shifted[COPIES * (size_t)from + copy] =
-            s->plain[COPIES * (size_t)from + copy] +
-            (whole ? 1 : 2 * nevh__wide_pi());
+            s->plain[COPIES * (size_t)from + copy] + (whole ? 1 : s->turn);
     s->changed[from] = 1;
     verdict found = s->is_root[from] ? JUMP : follow_jump(s, from, &until);
     memset(s->changed + from, 0, (size_t)(until - from) + 1);
     return found;
 }
 
-/* The value of all nodes. */
+/* The values of the nodes that H reads. */
 static void go_to_state(states *s, int state) {
     for (int i = 0; i < s->used; i++) {
         const nevh__graph_node *x = &s->g->nodes[i];
@@ -154,7 +171,7 @@ static void go_to_state(states *s, int state) {
         if (x->kind == NEVH__GRAPH_VARIABLE)
             for (int copy = 0; copy < COPIES; copy++)
                 to[copy] = scattered(x->at, state);
-        else
+        else if (s->is_read[i])
             jumps_evaluate(s, i, to);
     }
     s->work += COPIES * (double)s->used;
@@ -166,41 +183,45 @@ static bool jumps_make(states *s, const int roots[], size_t count) {
     s->shifted = nevh__array(COPIES * used, sizeof *s->shifted);
     s->last = nevh__array(used, sizeof *s->last);
     s->changed = nevh__array(used, 1);
-    s->is_root = nevh__array(used, 1);
+    s->is_root = nevh__array(2 * used, 1);
     if (!s->plain || !s->shifted || !s->last || !s->changed || !s->is_root)
         return false;
-    for (int i = 0; i < s->used; i++) {
-        const nevh__graph_node *x = &s->g->nodes[i];
-        s->last[i] = i;
-        if (x->a >= 0)
-            s->last[x->a] = i;
-        if (x->b >= 0)
-            s->last[x->b] = i;
-    }
+    s->is_read = s->is_root + used;
     for (size_t k = 0; k < count; k++)
         s->is_root[roots[k]] = 1;
+    for (int i = s->used - 1; i >= 0; i--) {
+        const int *of[] = {&s->g->nodes[i].a, &s->g->nodes[i].b};
+        s->is_read[i] |= s->is_root[i];
+        s->last[i] = s->last[i] > i ? s->last[i] : i;
+        for (int k = 0; k < 2 && s->is_read[i]; k++)
+            if (*of[k] >= 0) {
+                s->is_read[*of[k]] = 1;
+                s->last[*of[k]] = i > s->last[*of[k]] ? i : s->last[*of[k]];
+            }
+    }
     return true;
 }
 
+/* States at which nothing jumps; enough of them say that H does not. */
+enum { TRIED = 12, ENOUGH = 4, HAS_JUMP = 255 };
+
 void nevh__graph_find_jumps(nevh__graph *g, const int roots[], size_t count,
                             unsigned char jumps[]) {
-    enum { MOST = 24, LEAST = 6 };
-    static const double most_work = 2e7;
-    states s = {.g = g, .used = g->used};
+    static const double most_work = 3e7;
+    states s = {.g = g, .used = g->used, .turn = 2 * nevh__wide_pi()};
     bool made = jumps_make(&s, roots, count);
-    for (int state = 0; made && state < MOST && s.work < most_work; state++) {
+    for (int state = 0; made && state < TRIED && s.work < most_work; state++) {
         go_to_state(&s, state);
-        for (size_t k = 0; k < g->n_edges && s.work < most_work; k++)
-            if (g->edges[k].jump >= 0 && jumps[k] < MOST) {
-                verdict found = jumps_at_state(&s, &g->edges[k]);
-                jumps[k] = (unsigned char)(found == JUMP
-                                               ? MOST + 1
-                                               : jumps[k] + (found == NO_JUMP));
-            }
+        for (size_t k = 0; k < g->n_edges && s.work < most_work; k++) {
+            bool open = g->edges[k].jump >= 0 && jumps[k] != HAS_JUMP;
+            verdict found = open ? jumps_at_state(&s, &g->edges[k]) : UNKNOWN;
+            jumps[k] =
+                (unsigned char)(found == JUMP ? HAS_JUMP
+                                              : jumps[k] + (found == NO_JUMP));
+        }
     }
-    /* From how many states each is known, so far. */
     for (size_t k = 0; k < g->n_edges; k++)
-        jumps[k] = jumps[k] < LEAST || jumps[k] > MOST;
+        jumps[k] = jumps[k] < ENOUGH || jumps[k] == HAS_JUMP;
     g->failed = g->failed || !made;
     free(s.plain);
     free(s.shifted);

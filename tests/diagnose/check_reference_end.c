@@ -178,6 +178,8 @@ static const struct {
     {"x = 1", "T = p_x^2/2\nV = (x - 1)^2 - abs(x - 1)", true},
     {"x = 0, 1e-9", "T = p_x^2/2 + abs(p_x - 1e-9)\nV = x^4", true},
     {"x = 1, 0.5", "T = p_x^2/2\nV = abs(x - 1) + x^2/8", false},
+    {"x = 1, 1e-6", "T = p_x^2/2\nV = (x - 1)^2 - abs(x - 1)", false},
+    {"x = 0.01", "T = p_x^2/2\nV = 1 - cos(x) + 0*bessel_j0(x)", false},
     {"x = 1.001", "T = p_x^2/2\nV = abs(x - 1) + x^2/8", false},
 };
 

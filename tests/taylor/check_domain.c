@@ -71,6 +71,10 @@ static const formula kinks[] = {
     {"x = 0.3, -1", "1e-9*cos(1e13*floor(x)) + x^2/2", 0.29145679},
     {"x = 0.3, 1", "x^2/2 + 1e-14*x*floor(x)", 0.987882738},
     {"x = 0.3, 1", "x^2/2 + sin(pi*x)*(-1)^floor(x)", 0.836121586},
+    {"x = 2.7, 3", "x^2/2 + 0.1*sign(floor(x) - 3)", 0.105166123},
+    {"x = 0.3, 1", "x^2/2 + 0.1*mod(floor(x), 2)", 0.987882738},
+    {"x = 0.3004, 1", "x^2/2 + 0.1*tanh(floor(1000*x))", 0.000600054118},
+    {"x = 0.3, 1", "x^2/2 + floor(x)/(1 + exp(200 - x))", 0.987882738},
 };
 /* The same operations off these places, or where they cancel. */
 static const formula smooth[] = {

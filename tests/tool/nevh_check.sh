@@ -187,7 +187,7 @@ lacks 'not conserved'
 # Parts are told of forces that are finite: B is empty in Kepler's problem, and not at
 # the edge of the domain of a root.
 has '^# +B is 0: steps of any length are exact'
-for jump in '0.3*floor(x)' 'mod(x, 1)'; do
+for jump in '0.3*floor(x)' 'mod(x, 1)' '0.3*floor(x^2)' 'floor(abs(x))'; do
     printf '[coordinates]\nx = 0.3\np_x = 1\n[effects]\nK = p_x^2/2\nV = %s\n[run]\nt_end = 9\n' \
         "$jump" >$work/jump.nevh
     exits 0 check $work/jump.nevh --integrators saba2 --dt 0.1 --format csv
