@@ -146,7 +146,10 @@ static bool has_kink_at(line *l, const double z[], size_t k) {
     for (int i = 0; i < STEPS; i++, step *= shorter)
         met[i] = fabs(value_off(l, z, k, step) - 2 * middle +
                       value_off(l, z, k, -step));
-    bool kink = met[STEPS - 1] > 0;
+    double up = value_off(l, z, k, step) - middle;
+    double down = middle - value_off(l, z, k, -step);
+    bool leaves = k < l->field->n && up * down > 0; /* to one side */
+    bool kink = met[STEPS - 1] > 0 && !leaves;
     for (int i = 1; i < STEPS; i++)
         kink = kink && met[i] > met[i - 1] * shorter / 2 &&
                met[i] < met[i - 1] * shorter * 2;

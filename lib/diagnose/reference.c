@@ -230,6 +230,19 @@ static int refuse_kink_at_rest(nevh_reference *r) {
                       "more than one orbit may go on");
 }
 
+/* True if a function that may jump ends the series, and H, which would tell of a jump,
+   changes along the orbit anyway. */
+static bool hides_jump(const nevh_reference *r, const nevh__report *ended) {
+    static const char *const jumps[] = {"floor(...)", "mod(...)", "sign(...)",
+                                        "atan2(...)"};
+    bool constant = nevh_system_traits(r->system) & NEVH_AUTONOMOUS &&
+                    !nevh_system_friction(r->system, NULL);
+    bool found = false;
+    for (size_t i = 0; i < sizeof jumps / sizeof *jumps; i++)
+        found = found || strstr(ended->text, jumps[i]);
+    return ended->status == NEVH_EDOM && !constant && found;
+}
+
 static int use_run(nevh_reference *r) {
     bool asked = r->integrator == nevh_taylor;
     int status =
@@ -238,6 +251,8 @@ static int use_run(nevh_reference *r) {
         return status;
     nevh__report ended = r->report;
     bool dear = !r->integrator && strstr(r->report.text, "cost too much");
+    if (hides_jump(r, &ended))
+        return ended.status;
     r->report = (nevh__report){0};
     if (!r->integrator)
         r->integrator =

@@ -221,7 +221,8 @@ void nevh__time_parts_clear(parts *m) {
 static double beside_state(double x, size_t k, int state) {
     static const double golden = 0.6180339887498949;
     double turn = (double)(k + 1) * state * golden;
-    return x + (state ? (turn - floor(turn) - 0.5) * (1 + fabs(x)) : 0);
+    double by = ldexp(turn - floor(turn) - 0.5, state);
+    return x + (state ? by * (1 + fabs(x)) : 0);
 }
 
 static double timing_parts_sample(const parts *m,

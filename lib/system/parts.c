@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TRIALS = 4 }; /* of eight states each */
+enum { TRIALS = 13 }; /* of eight states each */
 static const double roundings = 256;
 
 /* Rows of eight states of an instance. */
@@ -147,7 +147,8 @@ static bool has_no_jumps(const trial *x, const double form[]) {
 
 bool nevh__form_find(const nevh__term_entry *term, size_t instance,
                      double form[], double room[]) {
-    static const int powers[TRIALS] = {-20, 0, 20, 45};
+    static const int powers[TRIALS] = {-30, -20, -14, -10, -8, -6, -4,
+                                       -2,  0,   2,   4,   10, 45};
     trial x = parts_lay_out(term, instance, room);
     uint64_t random = 1;
     for (size_t j = 0; j < x.nv; j++)

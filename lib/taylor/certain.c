@@ -145,8 +145,7 @@ static int certain_make(nevh_certain *c, const nevh_system *system,
     c->t0 = from->t;
     c->seen = (double)c->t0;
     c->system = system;
-    c->recurrence =
-        nevh__recurrence_wide(system, from->rates, false, &c->report);
+    c->recurrence = nevh__recurrence_wide(system, from->rates, &c->report);
     return c->recurrence ? start_both(c, c->digits <= DIGITS_OF_PAIRS)
                          : c->report.status;
 }

@@ -68,6 +68,7 @@ typedef struct {
     size_t slots;
     nevh__graph_edge *edges; /* each once */
     size_t n_edges, edge_capacity;
+    bool exact;      /* numbers mean no more digits than they have */
     bool failed;     /* memory is out */
     bool overflowed; /* too many nodes */
 } nevh__graph;

@@ -5,7 +5,7 @@
    read whole periods of the change, and two that change may cancel in a sum or product;
    any other function that does not show the change may show it at other states.  Jumps
    that H has of two at one place, such as floor(x + 1) - floor(x), count as jumps.
-   Numbers of H are as exact as those of a double, such as 2 pi: what a change of their
+   Some numbers of H are rounded, such as 6.283185307179586: what a change of their
    last digit explains is no difference.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "taylor/graph_private.h"
@@ -36,22 +36,63 @@ static double scatter(uint64_t seed) {
     return (double)((seed ^ seed >> 31) >> 11) * 0x1p-53;
 }
 
-/* A variable at a state, from 2^-4 to 2^10. */
+/* A variable at a state, from 2^-4 to 2^10; at every third from 2^-100 to 2^50: units may
+   be of any size. */
 static double scattered(size_t at, int state) {
-    enum { LOWEST = -4, SPAN = 14, SPREAD = 4 };
+    enum {
+        LOWEST = -4,
+        SPAN = 14,
+        SPREAD = 4,
+        FARTHEST = -100,
+        FAR_SPAN = 150
+    };
     uint64_t seed = 2 * ((uint64_t)at << 8 | (unsigned)state);
-    double scale = LOWEST + (SPAN - SPREAD) * scatter((uint64_t)state << 40);
+    bool far = state % 3 == 2;
+    double scale =
+        (far ? FARTHEST : LOWEST) +
+        ((far ? FAR_SPAN : SPAN) - SPREAD) * scatter((uint64_t)state << 40);
     return copysign(exp2(scale + SPREAD * scatter(seed)),
                     scatter(seed + 1) - 0.5);
 }
 
-/* 1, but in a changed copy of number i that is no short one, such as 3 or 0.5. */
+static nevh__wide size_of(nevh__wide x) {
+    return x < 0 ? -x : x;
+}
+
+/* From -1 to 1, of a size of 1/2 at least; 0 where nothing is changed. */
+static double shift_of(int i, int copy, bool again) {
+    uint64_t seed = (uint64_t)i << 4 | (unsigned)copy << 1 | again;
+    double x = scatter(seed + (1ull << 60)) - 0.5;
+    return copy ? x + copysign(0.5, x) : 0;
+}
+
+static bool is_whole(nevh__wide x) {
+    double near = rint((double)x); /* of more digits than a double: some off */
+    nevh__wide rest = x - near;
+    double off = (double)(rest - rint((double)rest));
+    return fabs(off) < 1e-9;
+}
+
+/* True of a double that is no short number, as 3, 0.5 or 1e16 are, and of a decimal
+   number of 14 to 17 digits: more are meant. */
+static bool is_rounded(nevh__wide x) {
+    enum { BITS = 40, MORE = 16 }; /* digits after the first */
+    static const double short_part = 1e-4;
+    int exponent;
+    double mantissa = ldexp(frexp((double)x, &exponent), BITS);
+    if ((double)x == x)
+        return mantissa != rint(mantissa);
+    double first = floor(log10(fabs((double)x)));
+    nevh__wide digits =
+        x * nevh__operation_wide(NEVH__POWER, 10, MORE - (nevh__wide)first);
+    return is_whole(digits) && !is_whole(digits * (nevh__wide)short_part);
+}
+
+/* 1, but in a changed copy of number i that is rounded. */
 static nevh__wide last_digit(int i, int copy, nevh__wide number) {
-    if ((float)number == number)
-        return 1;
-    double x =
-        scatter(((uint64_t)i << 4 | (unsigned)copy) + (1ull << 60)) - 0.5;
-    return copy ? 1 + (nevh__wide)((x + copysign(0.5, x)) * 0x1p-51) : 1;
+    return is_rounded(number)
+               ? 1 + (nevh__wide)(shift_of(i, copy, false) * 0x1p-51)
+               : 1;
 }
 
 static const nevh__wide *jumps_values(const states *s, int i) {
@@ -85,16 +126,17 @@ static void jumps_evaluate(const states *s, int i, nevh__wide to[]) {
     for (int copy = 0; copy < COPIES; copy++) {
         nevh__wide a = x->a >= 0 ? jumps_values(s, x->a)[copy] : 0;
         nevh__wide b = x->b >= 0 ? jumps_values(s, x->b)[copy] : a;
-        to[copy] = jumps_operate(x, i, copy, a, b);
+        to[copy] = jumps_operate(x, i, s->g->exact ? 0 : copy, a, b);
+        if (x->kind == NEVH__GRAPH_ADD) /* rounding, as large as it may be */
+            to[copy] += shift_of(i, copy, to < s->shifted) *
+                        NEVH__WIDE_ROUNDING * (size_of(a) + size_of(b));
     }
 }
 
-static nevh__wide size_of(nevh__wide x) {
-    return x < 0 ? -x : x;
-}
-
-/* True if values differ by no more than rounding and the numbers of H explain. */
-static bool jumps_same(const nevh__wide x[], const nevh__wide y[]) {
+/* True if values differ by no more than rounding and the numbers of H explain.
+   size  of what they are made of */
+static bool jumps_same(const nevh__wide x[], const nevh__wide y[],
+                       nevh__wide size) {
     static const double roundings = 256, digits = 16;
     nevh__wide apart = y[0] - x[0], spread = 0;
     for (int copy = 1; copy < COPIES; copy++) {
@@ -103,7 +145,14 @@ static bool jumps_same(const nevh__wide x[], const nevh__wide y[]) {
     }
     return size_of(apart) <=
            digits * spread + roundings * NEVH__WIDE_ROUNDING *
-                                 (size_of(x[0]) + size_of(y[0]));
+                                 (size_of(x[0]) + size_of(y[0]) + size);
+}
+
+/* The operands of a sum, which may cancel. */
+static nevh__wide size_of_parts(const states *s, const nevh__graph_node *x) {
+    return x->kind == NEVH__GRAPH_ADD ? size_of(jumps_values(s, x->a)[0]) +
+                                            size_of(jumps_values(s, x->b)[0])
+                                      : 0;
 }
 
 /* True if a change of an operand that the node does not show is none elsewhere. */
@@ -137,11 +186,12 @@ static verdict follow_jump(states *s, int from, int *until) {
             continue;
         jumps_evaluate(s, i, to);
         s->work += COPIES;
-        bool same = jumps_same(before, to);
+        bool same = jumps_same(before, to, size_of_parts(s, x));
         if (to[0] - to[0] != 0 || before[0] - before[0] != 0 ||
-            is_doubtful(x, to) || is_doubtful(x, before))
+            is_doubtful(x, to) || is_doubtful(x, before) ||
+            (same && !cancels(s, x)))
             found = UNKNOWN;
-        else if (same ? !cancels(s, x) : s->is_root[i])
+        else if (!same && s->is_root[i])
             found = JUMP;
         else if (!same) {
             s->changed[i] = 1;
@@ -179,14 +229,14 @@ static void go_to_state(states *s, int state) {
 
 static bool jumps_make(states *s, const int roots[], size_t count) {
     size_t used = (size_t)s->used;
-    s->plain = nevh__array(COPIES * used, sizeof *s->plain);
-    s->shifted = nevh__array(COPIES * used, sizeof *s->shifted);
+    s->plain = nevh__array(2 * COPIES * used, sizeof *s->plain);
     s->last = nevh__array(used, sizeof *s->last);
     s->changed = nevh__array(used, 1);
     s->is_root = nevh__array(2 * used, 1);
-    if (!s->plain || !s->shifted || !s->last || !s->changed || !s->is_root)
+    if (!s->plain || !s->last || !s->changed || !s->is_root)
         return false;
     s->is_read = s->is_root + used;
+    s->shifted = s->plain + COPIES * used;
     for (size_t k = 0; k < count; k++)
         s->is_root[roots[k]] = 1;
     for (int i = s->used - 1; i >= 0; i--) {
@@ -203,7 +253,7 @@ static bool jumps_make(states *s, const int roots[], size_t count) {
 }
 
 /* States at which nothing jumps; enough of them say that H does not. */
-enum { TRIED = 12, ENOUGH = 4, HAS_JUMP = 255 };
+enum { TRIED = 15, ENOUGH = 4, HAS_JUMP = 255 };
 
 void nevh__graph_find_jumps(nevh__graph *g, const int roots[], size_t count,
                             unsigned char jumps[]) {
@@ -224,7 +274,6 @@ void nevh__graph_find_jumps(nevh__graph *g, const int roots[], size_t count,
         jumps[k] = jumps[k] < ENOUGH || jumps[k] == HAS_JUMP;
     g->failed = g->failed || !made;
     free(s.plain);
-    free(s.shifted);
     free(s.last);
     free(s.changed);
     free(s.is_root);

@@ -255,10 +255,10 @@ static bool schedule(nevh__recurrence *r, const nevh__graph *g,
     return fine;
 }
 
-nevh__recurrence *nevh__recurrence_wide(const nevh_system *system,
-                                        const nevh__wide friction[],
-                                        bool broken, nevh__report *report) {
-    nevh__graph g = {0};
+static nevh__recurrence *schedule_made(const nevh_system *system,
+                                       const nevh__wide friction[], bool broken,
+                                       bool exact, nevh__report *report) {
+    nevh__graph g = {.exact = exact};
     nevh__recurrence *r = nevh__array(1, sizeof *r);
     int *slope = nevh__array(2 * system->n, sizeof *slope);
     int status = NEVH_ENOMEM;
@@ -279,16 +279,22 @@ nevh__recurrence *nevh__recurrence_wide(const nevh_system *system,
     return NULL;
 }
 
+nevh__recurrence *nevh__recurrence_wide(const nevh_system *system,
+                                        const nevh__wide friction[],
+                                        nevh__report *report) {
+    return schedule_made(system, friction, false, true, report);
+}
+
 nevh__recurrence *nevh__recurrence_new(const nevh_system *system,
                                        const double friction[], bool broken,
                                        nevh__report *report) {
     if (!friction)
-        return nevh__recurrence_wide(system, NULL, broken, report);
+        return schedule_made(system, NULL, broken, false, report);
     nevh__wide *rates = nevh__array(system->n, sizeof *rates);
     for (size_t k = 0; rates && k < system->n; k++)
         rates[k] = friction[k];
     nevh__recurrence *r =
-        rates ? nevh__recurrence_wide(system, rates, broken, report) : NULL;
+        rates ? schedule_made(system, rates, broken, false, report) : NULL;
     if (!rates)
         nevh__no_memory(report);
     free(rates);

@@ -106,10 +106,11 @@ void nevh__domain_words(const nevh__recurrence *, size_t edge, char text[],
 nevh__recurrence *nevh__recurrence_new(const nevh_system *,
                                        const double friction[], bool broken,
                                        nevh__report *);
-/* The same of rates with more digits. */
+/* The same of rates with more digits, and for runs of more digits: jumps of H that are
+   below those of a double count, and functions of t have no kinks. */
 nevh__recurrence *nevh__recurrence_wide(const nevh_system *,
                                         const nevh__wide friction[],
-                                        bool broken, nevh__report *);
+                                        nevh__report *);
 void nevh__recurrence_free(nevh__recurrence *); /* NULL is allowed */
 
 /* The message on coefficients that are not finite, at a time. */
