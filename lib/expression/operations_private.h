@@ -37,7 +37,7 @@
       .at_edge = "a function of a quotient, which has a pole there,")          \
     X(ARITHMETIC, POWER, "^", 2, NEVH__F(pow)(a, b),                           \
       NEVH__G(nevh__chain(b, NEVH__F(pow)(a, b - 1))),                         \
-      NEVH__G(nevh__chain(y, NEVH__F(log)(NEVH__L(fabs)(a)))),                 \
+      NEVH__G(nevh__chain(y, NEVH__F(log)(a))),                                \
       .by_a = {"b a b 1 - ^ *"}, .by_b = {"a log y *"},                        \
       .at_edge = "a power that is no whole number, whose base reaches 0,")     \
     X(ARITHMETIC, NEGATE, "-", 1, -a, -g, 0,                                   \
@@ -133,7 +133,8 @@
       .edge = "a b / a b / floor - 1 a b / a b / floor - - *",                 \
       .at_edge = "mod(...), whose first argument reaches a multiple of the "   \
                  "second,")                                                    \
-    X(KINK, FLOOR, "floor", 1, NEVH__L(floor)(a), NEVH__G(0), 0,               \
+    X(KINK, FLOOR, "floor", 1, NEVH__L(floor)(a),                              \
+      nevh__choose(y == y, 0, y), 0,                                           \
       .by_a = {"0"}, .lanewise = true, .exact = true,                          \
       .edge = "a a floor - 1 a a floor - - *",                                 \
       .at_edge = "floor(...), whose argument reaches a whole number,")         \

@@ -139,7 +139,8 @@ static bool has_no_jumps(const trial *x, const double form[]) {
             off -= z * (linear(x, i, row, &part) + row[x->nv]) / 2;
             size += fabs(z) * part;
         }
-        if (!(fabs(off) <= roundings * DBL_EPSILON * size))
+        if (isfinite(off) &&
+            fabs(off) > roundings * DBL_EPSILON * size + DBL_MIN)
             return false;
     }
     return true;
