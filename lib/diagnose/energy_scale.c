@@ -173,9 +173,7 @@ static double orbit_energy(nevh_field *values, double t, const double q[],
                            const double p[]) {
     motion m = {.values = values,
                 .start = t,
-                .constant =
-                    nevh_system_traits(values->system) & NEVH_AUTONOMOUS &&
-                    !nevh_system_friction(values->system, NULL)};
+                .constant = nevh__conserves_energy(values->system)};
     double *state = nevh__array(4 * values->n, sizeof *state);
     fenv_t own; /* as in nevh_stepper_new */
     feholdexcept(&own);

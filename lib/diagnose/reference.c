@@ -209,40 +209,6 @@ static int use_exact_or_series(nevh_reference *r, bool *kept) {
                : use_exact(r, kept);
 }
 
-/* Refuses a run from rest on a kink: that with half the step agrees with it, though
-   another orbit may go on from there. */
-static int refuse_kink_at_rest(nevh_reference *r) {
-    nevh_options values = {.gradient = &nevh__no_gradient};
-    nevh_field *f = nevh_field_new(r->system, &values);
-    double *room = nevh__array(4 * r->n, sizeof *room);
-    bool made = f && room;
-    bool rests = made && !nevh_field_status(f) &&
-                 nevh__kink_at_rest(f, r->t0, r->start, room);
-    nevh_field_free(f);
-    free(room);
-    if (!made)
-        return nevh__no_memory(&r->report);
-    if (!rests)
-        return NEVH_OK;
-    r->text[0] = '\0';
-    return nevh__fail(&r->report, NEVH_EDOM,
-                      "the orbit starts at rest on a kink of H, from where "
-                      "more than one orbit may go on");
-}
-
-/* True if a function that may jump ends the series, and H, which would tell of a jump,
-   changes along the orbit anyway. */
-static bool hides_jump(const nevh_reference *r, const nevh__report *ended) {
-    static const char *const jumps[] = {"floor(...)", "mod(...)", "sign(...)",
-                                        "atan2(...)"};
-    bool constant = nevh_system_traits(r->system) & NEVH_AUTONOMOUS &&
-                    !nevh_system_friction(r->system, NULL);
-    bool found = false;
-    for (size_t i = 0; i < sizeof jumps / sizeof *jumps; i++)
-        found = found || strstr(ended->text, jumps[i]);
-    return ended->status == NEVH_EDOM && !constant && found;
-}
-
 static int use_run(nevh_reference *r) {
     bool asked = r->integrator == nevh_taylor;
     int status =
@@ -251,15 +217,16 @@ static int use_run(nevh_reference *r) {
         return status;
     nevh__report ended = r->report;
     bool dear = !r->integrator && strstr(r->report.text, "cost too much");
-    if (hides_jump(r, &ended))
-        return ended.status;
+    if (ended.status == NEVH_EDOM && r->may_jump &&
+        !nevh__conserves_energy(r->system))
+        return ended.status; /* H would tell of a jump if it were constant */
     r->report = (nevh__report){0};
     if (!r->integrator)
         r->integrator =
             nevh_system_friction(r->system, NULL) ? nevh_dop853 : nevh_gauss12;
     status = nevh__reference_run(r);
     if (!status)
-        status = refuse_kink_at_rest(r);
+        status = nevh__reference_refuse_kink(r);
     if (status && isfinite(r->ends))
         r->report = ended, status = ended.status;
     size_t used = strlen(r->text);

@@ -35,6 +35,7 @@ struct nevh_reference {
     nevh_reference_end end;
     double longest;                        /* step of a run; 0: not said */
     bool finest;                           /* as the options say */
+    bool may_jump;                         /* a function of H, at an edge */
     nevh__exact_solution *exact;           /* NULL: a run */
     struct nevh__reference_series *series; /* NULL: a run of another kind */
     const nevh_integrator *integrator;
@@ -86,6 +87,9 @@ int nevh__watch_exact(nevh_reference *, bool *kept);
 /* The part of the run's own error that the change of H adds; 0 if the error of the
    runs explains it. */
 double nevh__watch_error(const nevh__watch *);
+/* Refuses a run from rest on a kink: that with half the step agrees with it, though
+   another orbit may go on from there. */
+int nevh__reference_refuse_kink(nevh_reference *);
 
 /* True if the orbit is chaotic, by the indicators of nevh_chaos_find over the time
    of the reference, or eight times that; `exponent` becomes that of chaos.

@@ -86,6 +86,7 @@ static int reference_series_plan(nevh_reference *r, chain *c,
     bool damped = nevh_system_friction(r->system, c->rates);
     c->recurrence = nevh__recurrence_new(r->system, damped ? c->rates : NULL,
                                          r->timing, &r->report);
+    r->may_jump = c->recurrence && nevh__domain_may_jump(c->recurrence);
     if (!c->recurrence)
         return r->report.status;
     bool made =

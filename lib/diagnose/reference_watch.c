@@ -4,6 +4,7 @@
    H, which no derivative knows of, or a wall thinner than a step.  But then H
    changes by more than the two differ.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "diagnose/kinks_private.h"
 #include "diagnose/reference_private.h"
 #include "gradient/field_private.h"
 #include <math.h>
@@ -15,17 +16,11 @@ static const double rounding = 1e-8; /* of the effects: let alone what is less,
                                         which is in the own error */
 enum { HALVINGS = 40 }; /* to a place that is between two numbers, not one */
 
-/* Only where H is to stay the same. */
-static bool is_constant(const nevh_system *s) {
-    return nevh_system_traits(s) & NEVH_AUTONOMOUS &&
-           !nevh_system_friction(s, NULL);
-}
-
 int nevh__watch_init(nevh__watch *w, const nevh_reference *r) {
     size_t n = r->n, effects = nevh_system_effect_count(r->system);
     nevh_options o = {.gradient = &nevh__no_gradient};
     *w = (nevh__watch){.n = n, .t0 = r->t0, .start = r->start};
-    if (!is_constant(r->system))
+    if (!nevh__conserves_energy(r->system))
         return NEVH_OK;
     w->field = nevh_field_new(r->system, &o);
     w->before = nevh__array(6 * n + 2 * effects, sizeof *w->before);
@@ -191,4 +186,23 @@ int nevh__watch_exact(nevh_reference *r, bool *kept) {
         nevh__fail(&r->report, status, "out of memory");
     nevh__watch_clear(&w);
     return status;
+}
+
+int nevh__reference_refuse_kink(nevh_reference *r) {
+    nevh_options values = {.gradient = &nevh__no_gradient};
+    nevh_field *f = nevh_field_new(r->system, &values);
+    double *room = nevh__array(4 * r->n, sizeof *room);
+    bool made = f && room;
+    bool rests = made && !nevh_field_status(f) &&
+                 nevh__kink_at_rest(f, r->t0, r->start, room);
+    nevh_field_free(f);
+    free(room);
+    if (!made)
+        return nevh__no_memory(&r->report);
+    if (!rests)
+        return NEVH_OK;
+    r->text[0] = '\0';
+    return nevh__fail(&r->report, NEVH_EDOM,
+                      "the orbit starts at rest on a kink of H, from where "
+                      "more than one orbit may go on");
 }

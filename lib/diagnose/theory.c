@@ -18,14 +18,12 @@ static bool is_rough(const nevh_system *s) {
 nevh_theory nevh__theory_of(const nevh_stepper *s) {
     const nevh_integrator *scheme = s->work.integrator;
     const nevh_system *system = s->work.system;
-    bool friction = nevh_system_friction(system, NULL);
-    bool autonomous = nevh_system_traits(system) & NEVH_AUTONOMOUS;
     nevh_claim symplectic = nevh_integrator_symplectic(scheme);
     bool keeps = symplectic == NEVH_YES || symplectic == NEVH_EXTENDED ||
                  nevh_integrator_preserves_energy(scheme) == NEVH_YES;
     if (!keeps && nevh_integrator_symmetric(scheme) == NEVH_NO)
         return NEVH_THEORY_LOSES;
-    if (!keeps || !autonomous || friction)
+    if (!keeps || !nevh__conserves_energy(system))
         return NEVH_THEORY_OPEN;
     return is_rough(system) ? NEVH_THEORY_ROUGH : NEVH_THEORY_KEEPS;
 }

@@ -68,6 +68,7 @@
       NEVH__G(-a / NEVH__F(hypot)(a, b) / NEVH__F(hypot)(a, b)),               \
       .by_a = {"b", "a a * b b * +"}, .by_b = {"a neg", "a a * b b * +"},      \
       .lanewise = true, .usage = "(y, x)",                                     \
+      .jumps = true,                                                           \
       .at_edge = "atan2(...), which jumps where its direction is that of the " \
                  "negative axis,")                                             \
     X(FUNCTION, SINH, "sinh", 1, NEVH__F(sinh)(a), NEVH__G(NEVH__F(cosh)(a)),  \
@@ -126,17 +127,20 @@
       .at_edge = "max(...), whose arguments become equal,")                    \
     X(KINK, SIGN, "sign", 1, NEVH__H(sign)(a), NEVH__G(0), 0,                  \
       .by_a = {"0"}, .lanewise = true, .exact = true,                          \
+      .jumps = true,                                                           \
       .edge = "a", .at_edge = "sign(...), whose argument reaches 0,")          \
     X(KINK, MOD, "mod", 2, NEVH__H(mod)(a, b), g, NEVH__G(-rint((a - y) / b)), \
       .by_a = {"1"}, .by_b = {"a b / floor neg"},                              \
       .as = "a b a b / floor * -", .lanewise = true, .usage = "(a, b)",        \
       .edge = "a b / a b / floor - 1 a b / a b / floor - - *",                 \
+      .jumps = true,                                                           \
       .at_edge = "mod(...), whose first argument reaches a multiple of the "   \
                  "second,")                                                    \
     X(KINK, FLOOR, "floor", 1, NEVH__L(floor)(a),                              \
       nevh__choose(y == y, 0, y), 0,                                           \
       .by_a = {"0"}, .lanewise = true, .exact = true,                          \
       .edge = "a a floor - 1 a a floor - - *",                                 \
+      .jumps = true,                                                           \
       .at_edge = "floor(...), whose argument reaches a whole number,")         \
     X(SPECIAL, BESSEL_J0, "bessel_j0", 1, NEVH__S(bessel_j0)(a),               \
       NEVH__G(-nevh__bessel_j1(a)), 0, .usage = 0)                                      \

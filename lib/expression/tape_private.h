@@ -68,6 +68,7 @@ typedef struct {
     const char *edge;    /* where it is 0 the function ends */
     const char *at_edge; /* and what is said there */
     bool touches;        /* finite at the edge */
+    bool jumps;          /* its values do at the edge */
     bool steep;    /* it grows faster than any polynomial, or saturates so */
     bool exact;    /* it rounds nothing */
     bool lanewise; /* compiled text takes lane by lane */

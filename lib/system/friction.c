@@ -63,3 +63,8 @@ bool nevh_system_friction(const nevh_system *s, double rates[]) {
     }
     return any;
 }
+
+bool nevh__conserves_energy(const nevh_system *s) {
+    return nevh_system_traits(s) & NEVH_AUTONOMOUS &&
+           !nevh_system_friction(s, NULL);
+}

@@ -117,22 +117,15 @@ static bool follows(const trial *x, size_t lane, double step,
     return true;
 }
 
-/* True if values at the states and at 0 differ as those of a form do.  A function that
-   jumps may have the derivatives of a form at all states. */
+/* True if values at the states and at the first one, which is 0, differ as those of a
+   form do.  A function that jumps may have the derivatives of a form at all states. */
 static bool has_no_jumps(const trial *x, const double form[]) {
-    size_t n = NEVH__LANES * x->nv, p = NEVH__LANES * x->term->decl.nq;
-    double value[2][NEVH__LANES];
-    for (int side = 0; side < 2; side++) {
-        for (size_t k = 0; k < n; k++)
-            x->beside[k] = side ? 0 : x->z[k];
-        nevh__term_values(x->term, false, NEVH__LANES, NEVH__LANES, x->t,
-                          x->beside, x->beside + p, x->c, x->h, x->one);
-        for (size_t i = 0; i < NEVH__LANES; i++)
-            value[side][i] = x->h[i];
-    }
-    for (size_t i = 0; i < NEVH__LANES; i++) {
-        double off = value[0][i] - value[1][i], part;
-        double size = fabs(value[0][i]) + fabs(value[1][i]);
+    size_t p = NEVH__LANES * x->term->decl.nq;
+    nevh__term_values(x->term, false, NEVH__LANES, NEVH__LANES, x->t, x->z,
+                      x->z + p, x->c, x->h, x->one);
+    for (size_t i = 1; i < NEVH__LANES; i++) {
+        double off = x->h[i] - x->h[0], part;
+        double size = fabs(x->h[i]) + fabs(x->h[0]);
         for (size_t k = 0; k < x->nv; k++) {
             const double *row = form + k * (x->nv + 1);
             double z = x->z[k * NEVH__LANES + i];
@@ -157,7 +150,7 @@ bool nevh__form_find(const nevh__term_entry *term, size_t instance,
     for (size_t i = 0; i < TRIALS; i++) {
         double length = ldexp(1, powers[i]);
         for (size_t k = 0; k < NEVH__LANES * x.nv; k++)
-            x.z[k] = length * nevh__random(&random);
+            x.z[k] = k % NEVH__LANES ? length * nevh__random(&random) : 0;
         take_slopes(&x, length);
         for (size_t lane = 0; lane < NEVH__LANES; lane++)
             if (!follows(&x, lane, length, form))

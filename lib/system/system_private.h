@@ -49,6 +49,9 @@ int nevh__no_memory(nevh__report *);
         return x ? x->report.text : "out of memory";                           \
     }
 
+/* True if orbits conserve H: the system is autonomous and has no friction. */
+bool nevh__conserves_energy(const nevh_system *);
+
 /* Memory; each returns NULL when it is out or the size overflows.  A request
    for nothing gives memory all the same. */
 void *nevh__array(size_t count, size_t size); /* zeroed */

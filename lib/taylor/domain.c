@@ -169,6 +169,13 @@ size_t nevh__domain_kink(const nevh__recurrence *r) {
     return SIZE_MAX;
 }
 
+bool nevh__domain_may_jump(const nevh__recurrence *r) {
+    bool jumps = false;
+    for (size_t i = 0; i < r->n_edges; i++)
+        jumps = jumps || nevh__operation_of(r->edges[i].function)->jumps;
+    return jumps;
+}
+
 void nevh__domain_words(const nevh__recurrence *r, size_t edge, char text[],
                         size_t room) {
     const nevh__edge *e = &r->edges[edge];

@@ -1,7 +1,7 @@
-/* nevh: jumps of floor and of atan2 that H does not have.
+/* nevh: jumps of floor and of atan2, and kinks of abs, that H does not have.
 
    H(z; n) reads the value n of floor, and has no jump where H(z; n + 1) is the same
-   function of z.  Both are tried at states here and there, in wide numbers.  Sines may
+   function of z.  abs(a) = a sign(a), which reads -1 or 1.  Both are tried at states here and there, in wide numbers.  Sines may
    read whole periods of the change, and two that change may cancel in a sum or product;
    any other function that does not show the change may show it at other states.  Jumps
    that H has of two at one place, such as floor(x + 1) - floor(x), count as jumps.
@@ -14,8 +14,9 @@
 #include <string.h>
 
 enum {
-    COPIES = 3
-}; /* the numbers as they are, and changed in their last digit */
+    COPIES = 3, /* the numbers as they are, and changed in their last digit */
+    SHIFTS = 2 * (COPIES - 1)
+};
 
 /* Values at one state. */
 typedef struct {
@@ -23,47 +24,34 @@ typedef struct {
     int used;
     nevh__wide *plain, *shifted; /* COPIES a node; shifted: of changed nodes */
     int *last;                   /* the last node that reads a node */
+    double *
+        shifts; /* from -1 to 1, of a size of 1/2 at least; SHIFTS a node, 0 of a
+                       number that is meant as it is */
     unsigned char *changed, *is_root, *is_read; /* is_read: by H */
     nevh__wide turn;
+    uint64_t random;
     double work; /* operations */
 } states;
 
 /* From 0 to 1. */
-static double scatter(uint64_t seed) {
-    seed = (seed + 1) * 0x9e3779b97f4a7c15u;
-    seed = (seed ^ seed >> 30) * 0xbf58476d1ce4e5b9u;
-    seed = (seed ^ seed >> 27) * 0x94d049bb133111ebu;
-    return (double)((seed ^ seed >> 31) >> 11) * 0x1p-53;
+static double scatter(states *s) {
+    return (nevh__random(&s->random) + 1) / 2;
 }
 
-/* A variable at a state, from 2^-4 to 2^10; at every third from 2^-100 to 2^50: units may
-   be of any size. */
-static double scattered(size_t at, int state) {
-    enum {
-        LOWEST = -4,
-        SPAN = 14,
-        SPREAD = 4,
-        FARTHEST = -100,
-        FAR_SPAN = 150
-    };
-    uint64_t seed = 2 * ((uint64_t)at << 8 | (unsigned)state);
-    bool far = state % 3 == 2;
-    double scale =
-        (far ? FARTHEST : LOWEST) +
-        ((far ? FAR_SPAN : SPAN) - SPREAD) * scatter((uint64_t)state << 40);
-    return copysign(exp2(scale + SPREAD * scatter(seed)),
-                    scatter(seed + 1) - 0.5);
+/* The power of 2 near which the variables are at a state: from -4 to 10; at every
+   third from -100 to 50: units may be of any size. */
+static double scattered_scale(states *s, int state) {
+    return state % 3 == 2 ? -100 + 146 * scatter(s) : -4 + 10 * scatter(s);
+}
+
+static double scattered(states *s, double scale) {
+    enum { SPREAD = 4 };
+    double size = exp2(scale + SPREAD * scatter(s));
+    return copysign(size, nevh__random(&s->random));
 }
 
 static nevh__wide size_of(nevh__wide x) {
     return x < 0 ? -x : x;
-}
-
-/* From -1 to 1, of a size of 1/2 at least; 0 where nothing is changed. */
-static double shift_of(int i, int copy, bool again) {
-    uint64_t seed = (uint64_t)i << 4 | (unsigned)copy << 1 | again;
-    double x = scatter(seed + (1ull << 60)) - 0.5;
-    return copy ? x + copysign(0.5, x) : 0;
 }
 
 static bool is_whole(nevh__wide x) {
@@ -88,26 +76,33 @@ static bool is_rounded(nevh__wide x) {
     return is_whole(digits) && !is_whole(digits * (nevh__wide)short_part);
 }
 
-/* 1, but in a changed copy of number i that is rounded. */
-static nevh__wide last_digit(int i, int copy, nevh__wide number) {
-    return is_rounded(number)
-               ? 1 + (nevh__wide)(shift_of(i, copy, false) * 0x1p-51)
-               : 1;
+/* copy   not 0 */
+static double shift_of(const states *s, int i, int copy, bool again) {
+    return s->shifts[SHIFTS * i + 2 * (copy - 1) + again];
+}
+
+/* A number of H as a copy has it. */
+static nevh__wide number_of(const states *s, int i, int copy) {
+    nevh__wide number = s->g->nodes[i].number;
+    return copy ? number *
+                      (1 + (nevh__wide)(shift_of(s, i, copy, false) * 0x1p-51))
+                : number;
 }
 
 static const nevh__wide *jumps_values(const states *s, int i) {
     return (s->changed[i] ? s->shifted : s->plain) + COPIES * (size_t)i;
 }
 
-static nevh__wide jumps_operate(const nevh__graph_node *x, int i, int copy,
-                                nevh__wide a, nevh__wide b) {
+static nevh__wide jumps_operate(const states *s, int i, int copy, nevh__wide a,
+                                nevh__wide b) {
+    const nevh__graph_node *x = &s->g->nodes[i];
     switch (x->kind) {
     case NEVH__GRAPH_NUMBER:
-        return x->number * last_digit(i, copy, x->number);
+        return number_of(s, i, copy);
     case NEVH__GRAPH_ADD:
         return a + b;
     case NEVH__GRAPH_SCALE:
-        return x->number * last_digit(i, copy, x->number) * a;
+        return number_of(s, i, copy) * a;
     case NEVH__GRAPH_MULTIPLY:
         return a * b;
     case NEVH__GRAPH_INVERT:
@@ -126,9 +121,10 @@ static void jumps_evaluate(const states *s, int i, nevh__wide to[]) {
     for (int copy = 0; copy < COPIES; copy++) {
         nevh__wide a = x->a >= 0 ? jumps_values(s, x->a)[copy] : 0;
         nevh__wide b = x->b >= 0 ? jumps_values(s, x->b)[copy] : a;
-        to[copy] = jumps_operate(x, i, s->g->exact ? 0 : copy, a, b);
-        if (x->kind == NEVH__GRAPH_ADD) /* rounding, as large as it may be */
-            to[copy] += shift_of(i, copy, to < s->shifted) *
+        to[copy] = jumps_operate(s, i, copy, a, b);
+        if (copy && x->kind == NEVH__GRAPH_ADD) /* rounding, as large as it
+                                                    may be */
+            to[copy] += shift_of(s, i, copy, to < s->shifted) *
                         NEVH__WIDE_ROUNDING * (size_of(a) + size_of(b));
     }
 }
@@ -203,10 +199,13 @@ static verdict follow_jump(states *s, int from, int *until) {
 
 static verdict jumps_at_state(states *s, const nevh__graph_edge *e) {
     int from = e->jump, until = s->last[from];
-    bool whole = s->g->nodes[from].function == NEVH__FLOOR;
+    unsigned function = s->g->nodes[from].function;
+    const nevh__wide *plain = s->plain + COPIES * (size_t)from;
     for (int copy = 0; copy < COPIES; copy++)
         s->shifted[COPIES * (size_t)from + copy] =
-            s->plain[COPIES * (size_t)from + copy] + (whole ? 1 : s->turn);
+            function == NEVH__SIGN    ? -plain[copy]
+            : function == NEVH__FLOOR ? plain[copy] + 1
+                                      : plain[copy] + s->turn;
     s->changed[from] = 1;
     verdict found = s->is_root[from] ? JUMP : follow_jump(s, from, &until);
     memset(s->changed + from, 0, (size_t)(until - from) + 1);
@@ -215,31 +214,45 @@ static verdict jumps_at_state(states *s, const nevh__graph_edge *e) {
 
 /* The values of the nodes that H reads. */
 static void go_to_state(states *s, int state) {
+    double scale = scattered_scale(s, state);
     for (int i = 0; i < s->used; i++) {
         const nevh__graph_node *x = &s->g->nodes[i];
         nevh__wide *to = s->plain + COPIES * (size_t)i;
-        if (x->kind == NEVH__GRAPH_VARIABLE)
-            for (int copy = 0; copy < COPIES; copy++)
-                to[copy] = scattered(x->at, state);
-        else if (s->is_read[i])
+        if (x->kind == NEVH__GRAPH_VARIABLE) {
+            to[0] = scattered(s, scale);
+            for (int copy = 1; copy < COPIES; copy++)
+                to[copy] = to[0];
+        } else if (s->is_read[i])
             jumps_evaluate(s, i, to);
     }
     s->work += COPIES * (double)s->used;
 }
 
+static void draw_shifts(states *s, int i) {
+    const nevh__graph_node *x = &s->g->nodes[i];
+    bool number = x->kind != NEVH__GRAPH_ADD;
+    bool kept = number && (s->g->exact || !is_rounded(x->number));
+    for (int k = 0; k < SHIFTS && !kept; k++) {
+        double y = nevh__random(&s->random) / 2;
+        s->shifts[SHIFTS * i + k] = y + copysign(0.5, y);
+    }
+}
+
 static bool jumps_make(states *s, const int roots[], size_t count) {
     size_t used = (size_t)s->used;
     s->plain = nevh__array(2 * COPIES * used, sizeof *s->plain);
+    s->shifts = nevh__array(SHIFTS * used, sizeof *s->shifts);
     s->last = nevh__array(used, sizeof *s->last);
     s->changed = nevh__array(used, 1);
     s->is_root = nevh__array(2 * used, 1);
-    if (!s->plain || !s->last || !s->changed || !s->is_root)
+    if (!s->plain || !s->shifts || !s->last || !s->changed || !s->is_root)
         return false;
     s->is_read = s->is_root + used;
     s->shifted = s->plain + COPIES * used;
     for (size_t k = 0; k < count; k++)
         s->is_root[roots[k]] = 1;
     for (int i = s->used - 1; i >= 0; i--) {
+        draw_shifts(s, i);
         const int *of[] = {&s->g->nodes[i].a, &s->g->nodes[i].b};
         s->is_read[i] |= s->is_root[i];
         s->last[i] = s->last[i] > i ? s->last[i] : i;
@@ -258,7 +271,8 @@ enum { TRIED = 15, ENOUGH = 4, HAS_JUMP = 255 };
 void nevh__graph_find_jumps(nevh__graph *g, const int roots[], size_t count,
                             unsigned char jumps[]) {
     static const double most_work = 3e7;
-    states s = {.g = g, .used = g->used, .turn = 2 * nevh__wide_pi()};
+    states s = {
+        .g = g, .used = g->used, .turn = 2 * nevh__wide_pi(), .random = 1};
     bool made = jumps_make(&s, roots, count);
     for (int state = 0; made && state < TRIED && s.work < most_work; state++) {
         go_to_state(&s, state);
@@ -274,6 +288,7 @@ void nevh__graph_find_jumps(nevh__graph *g, const int roots[], size_t count,
         jumps[k] = jumps[k] < ENOUGH || jumps[k] == HAS_JUMP;
     g->failed = g->failed || !made;
     free(s.plain);
+    free(s.shifts);
     free(s.last);
     free(s.changed);
     free(s.is_root);

@@ -90,6 +90,8 @@ size_t nevh__domain_edge(const nevh__recurrence *, const double rows[],
 /* True if an orbit goes on behind an edge: the function is finite there for all
    arguments, and so is the momentum. */
 bool nevh__domain_is_closed(const nevh__recurrence *, size_t edge);
+/* True if an operation jumps at one of the edges. */
+bool nevh__domain_may_jump(const nevh__recurrence *);
 /* The first edge that is a kink of an operation, behind which an orbit goes on;
    SIZE_MAX: there is none. */
 size_t nevh__domain_kink(const nevh__recurrence *);

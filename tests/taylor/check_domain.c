@@ -129,6 +129,10 @@ static const struct {
     {"x = 0.3, 1",
      "exp(-mod(x, 2*pi))*exp(mod(x, 2*pi))*cos(x) + (mod(x, 1) + floor(x))^2",
      "cos(x) + x^2"},
+    {"x = 1", "abs(x)*abs(x) + cosh(abs(x)) + exp(2*max(x, 0) - abs(x))",
+     "x^2 + cosh(x) + exp(x)"},
+    {"x = 0, 1", "abs(sin(x))*abs(sin(x)) + sign(x)*abs(x)*x^2*sign(x)*abs(x)",
+     "sin(x)^2 + x^4"},
     {"x = 0.3, 1", "cos(x - 2*pi*mod(t, 1)) + x^2/2*(-1)^(2*floor(t))",
      "cos(x - 2*pi*t) + x^2/2"},
 };

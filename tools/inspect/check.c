@@ -10,13 +10,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* words   what follows, or "" */
+static void finding_note(nevh_question question, const nevh_finding *f,
+                         bool holds, const char *words, list *notes) {
+    list_print(notes, "  %-24s %-3s  %.1e  %.1e%s%s",
+               nevh_question_name(question), holds ? "yes" : "no", f->evidence,
+               f->limit, *words ? "  " : "", words);
+}
+
 static void finding_notes(const nevh_probe *probe, nevh_question question,
                           list *notes) {
     nevh_finding f = nevh_probe_finding(probe, question);
     bool has_term = f.term && (!f.holds || question == NEVH_IS_REVERSIBLE);
-    list_print(notes, "  %-24s %-3s  %.1e  %.1e%s%s",
-               nevh_question_name(question), f.holds ? "yes" : "no", f.evidence,
-               f.limit, has_term ? "  " : "", has_term ? f.term : "");
+    finding_note(question, &f, f.holds, has_term ? f.term : "", notes);
 }
 
 /* On the orbit a Taylor series knows better than differences beside it. */
@@ -28,17 +34,12 @@ static smoothness smoothness_finding(const plan *p, const nevh_probe *probe,
     bool timed = !(nevh_system_traits(p->system) & NEVH_AUTONOMOUS);
     bool agree =
         on_way == SMOOTHNESS_UNKNOWN || (on_way == SMOOTHNESS_ALL) == f.holds;
-    if (agree && f.holds && timed)
-        list_print(notes, "  %-24s yes  %.1e  %.1e  in q and p",
-                   nevh_question_name(NEVH_IS_SMOOTH), f.evidence, f.limit);
-    else if (agree)
+    if (agree && !(f.holds && timed))
         finding_notes(probe, NEVH_IS_SMOOTH, notes);
     else
-        list_print(notes,
-                   "  %-24s %-3s  %.1e  %.1e  on the orbit, by a Taylor "
-                   "series",
-                   nevh_question_name(NEVH_IS_SMOOTH), f.holds ? "no" : "yes",
-                   f.evidence, f.limit);
+        finding_note(NEVH_IS_SMOOTH, &f, f.holds == agree,
+                     agree ? "in q and p" : "on the orbit, by a Taylor series",
+                     notes);
     if (why)
         list_print(notes, "  (%s)", why);
     free(why);
