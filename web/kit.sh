@@ -7,25 +7,23 @@
 folder=$1
 module=$2
 
-# An element that holds a compressed file: its length, then five letters for four
-# bytes.
+# An element that holds a compressed file: its length, then two letters for 13 bits, the
+# lowest first: letters from # to ~ without <, as 91^2 > 2^13.
 packed() { # ID
     printf '<script type="text/plain" id="%s">' "$1"
     od -An -v -tu1 | LC_ALL=C awk '
-        BEGIN { letters = "!#$%*+,-./0123456789:;=?@ABCDEFGHIJKLMNOPQRSTUVWXYZ" \
-                    "[]^_abcdefghijklmnopqrstuvwxyz{|}~"
-                for (i = 0; i < 85; i++) letter[i] = substr(letters, i + 1, 1) }
-        function put(  i, text) {
-            for (i = 0; i < 5; i++) { text = letter[four % 85] text
-                four = int(four / 85) }
-            all = all text; four = 0
+        BEGIN { for (i = 0; i < 91; i++) letter[i] = sprintf("%c", i + 35 + (i > 24))
+                unit = 1 }
+        function put(  low) {
+            low = bits % 8192
+            all = all letter[low % 91] letter[int(low / 91)]
+            bits = int(bits / 8192); unit /= 8192
             if (length(all) > 2000) { out[n++] = all; all = "" } }
-        { for (i = 1; i <= NF; i++) { four = 256 * four + $i
-              if (++count % 4 == 0) put() } }
-        END { total = count
-              while (count++ % 4) { four = 256 * four
-                  if (count % 4 == 0) put() }
-              printf "%d ", total
+        { for (i = 1; i <= NF; i++) {
+              bits += $i * unit; unit *= 256; count++
+              if (unit >= 8192) put() } }
+        END { if (unit > 1) put()
+              printf "%d ", count
               for (i = 0; i < n; i++) printf "%s", out[i]
               printf "%s</script>\n", all }'
 }

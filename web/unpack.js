@@ -2,17 +2,17 @@
 // sources, in web/.  SPDX-License-Identifier: GPL-3.0-or-later
 "use strict";
 const nevhUnpack = (id) => {
-  const letters = "!#$%*+,-./0123456789:;=?@ABCDEFGHIJKLMNOPQRSTUVWXYZ" +
-    "[]^_abcdefghijklmnopqrstuvwxyz{|}~", value = [];
-  for (let i = 0; i < 85; i++) value[letters.charCodeAt(i)] = i;
   const [length, text] = document.getElementById(id).textContent.split(" ");
-  const bytes = new DataView(new ArrayBuffer(text.length / 5 * 4));
-  for (let i = 0; i < text.length / 5; i++) {
-    let four = 0;
-    for (let j = 0; j < 5; j++) four = 85 * four + value[text.charCodeAt(5 * i + j)];
-    bytes.setUint32(4 * i, four);
+  const bytes = new Uint8Array(+length + 2);
+  const value = (i) => text.charCodeAt(i) - 35 - (text.charCodeAt(i) > 60);
+  for (let i = 0, n = 0, bits = 0, left = 0; i < text.length; i += 2) {
+    bits |= value(i) + 91 * value(i + 1) << left;
+    for (left += 13; left > 7; left -= 8) {
+      bytes[n++] = bits;
+      bits >>= 8;
+    }
   }
-  const stream = new Blob([bytes.buffer.slice(0, length)]).stream()
+  const stream = new Blob([bytes.subarray(0, length)]).stream()
     .pipeThrough(new DecompressionStream("gzip"));
   return new Response(stream);
 };
