@@ -139,11 +139,6 @@ void nevh__graph_watch(nevh__graph *g, unsigned operation, int a, int b,
         e.jump = nevh__graph_apply(g, NEVH__FLOOR, a, a);
     if (operation == NEVH__MOD)
         e.jump = nevh__graph_build(g, "a b / floor", a, b);
-    if (operation == NEVH__ABS || operation == NEVH__SIGN)
-        e.jump = nevh__graph_apply(g, NEVH__SIGN, a, a);
-    if (operation == NEVH__MIN || operation == NEVH__MAX)
-        e.jump = nevh__graph_build(
-            g, operation == NEVH__MIN ? "b a - sign" : "a b - sign", a, b);
     if (f->edge) {
         e.strict = !f->touches;
         e.node = nevh__graph_build(g, f->edge, a, b);
@@ -158,8 +153,8 @@ void nevh__graph_watch(nevh__graph *g, unsigned operation, int a, int b,
     edges_add(g, e);
 }
 
-/* The end of the cut of atan2 is left, a pole of derivatives; no edge of others is. Of
-   sign only the value at 0 would be seen: 0, where H needs 1 or -1. */
+/* The end of the cut of atan2 is left, a pole of derivatives; no edge of floor or mod
+   is. */
 void nevh__graph_join_cuts(nevh__graph *g, const int roots[], size_t count) {
     size_t kept = 0, n = g->n_edges;
     unsigned char *jumps = nevh__array(n + 1, 1);
@@ -176,9 +171,6 @@ void nevh__graph_join_cuts(nevh__graph *g, const int roots[], size_t count) {
             e.node = nevh__graph_build(g, "a a * b b * +", e.node, e.also);
             e.also = e.jump = -1;
             e.function = NEVH__DIVIDE;
-        } else if (joined && g->nodes[e.jump].function == NEVH__SIGN) {
-            g->nodes[e.jump].kind = NEVH__GRAPH_NUMBER;
-            g->nodes[e.jump].number = 1;
         }
         if (!joined || (e.jump < 0 && e.node >= 0))
             g->edges[kept++] = e;

@@ -51,7 +51,7 @@ typedef struct {
    any polynomial, and may be lost in rounding at its beginning. */
 typedef struct {
     int node, also; /* also: of atan2, whose node is y, x; else -1 */
-    int jump; /* the node of floor, sign or atan2, which may jump there; else -1 */
+    int jump;    /* the node of floor or atan2, which may jump there; else -1 */
     bool strict; /* else it may touch 0: of a root that is squared again */
     bool steep;  /* of a function that grows so */
     uint8_t function;
@@ -97,8 +97,7 @@ void nevh__graph_watch(nevh__graph *, unsigned operation, int a, int b,
                        const char *effect);
 /* The node of half of atan2(a, b) that has its value. */
 int nevh__graph_angle(nevh__graph *, int a, int b);
-/* Forgets the cuts of atan2, and the jumps and kinks of floor, mod, abs and others, that
-   H does not have.
+/* Forgets the cuts of atan2, and the jumps of floor and mod, that H does not have.
    roots   nodes that are H's values */
 void nevh__graph_join_cuts(nevh__graph *, const int roots[], size_t count);
 /* Which edges are jumps of H; those are, too, of which trials cannot tell.

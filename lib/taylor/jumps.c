@@ -1,7 +1,7 @@
-/* nevh: jumps of floor and of atan2, and kinks of abs, that H does not have.
+/* nevh: jumps of floor and of atan2 that H does not have.
 
    H(z; n) reads the value n of floor, and has no jump where H(z; n + 1) is the same
-   function of z.  abs(a) = a sign(a), which reads -1 or 1.  Both are tried at states here and there, in wide numbers.  Sines may
+   function of z.  Both are tried at states here and there, in wide numbers.  Sines may
    read whole periods of the change, and two that change may cancel in a sum or product;
    any other function that does not show the change may show it at other states.  Jumps
    that H has of two at one place, such as floor(x + 1) - floor(x), count as jumps.
@@ -28,6 +28,8 @@ typedef struct {
         shifts; /* from -1 to 1, of a size of 1/2 at least; SHIFTS a node, 0 of a
                        number that is meant as it is */
     unsigned char *changed, *is_root, *is_read; /* is_read: by H */
+    unsigned char *lost;   /* true of what hides a summand at the state */
+    unsigned char *jumped; /* the functions that jump together */
     nevh__wide turn;
     uint64_t random;
     double work; /* operations */
@@ -167,6 +169,33 @@ static bool is_doubtful(const nevh__graph_node *x, const nevh__wide y[]) {
            (y[1] != y[0] || y[2] != y[0]);
 }
 
+/* True if a part of the node is hidden in what it reads: a summand that is far smaller
+   than the other one, or the argument of a function that has saturated. */
+static bool loses(const states *s, int i) {
+    static const double least = 1e-10;
+    const nevh__graph_node *x = &s->g->nodes[i];
+    double y = fabs((double)s->plain[COPIES * (size_t)i]);
+    bool lost = (x->a >= 0 && s->lost[x->a]) || (x->b >= 0 && s->lost[x->b]);
+    if (x->kind == NEVH__GRAPH_ADD) {
+        double a = fabs((double)jumps_values(s, x->a)[0]);
+        double b = fabs((double)jumps_values(s, x->b)[0]);
+        bool half = s->g->nodes[x->a].function == NEVH__NOTHING ||
+                    s->g->nodes[x->b].function == NEVH__NOTHING;
+        return lost || (fmin(a, b) <= least * fmax(a, b) && !half);
+    }
+    if (x->kind == NEVH__GRAPH_CALL && x->function == NEVH__TANH)
+        return lost || 1 - y < least;
+    if (x->kind == NEVH__GRAPH_CALL && x->function == NEVH__ATAN)
+        return lost || fabs((double)jumps_values(s, x->a)[0]) > 1 / least;
+    return lost;
+}
+
+/* True if a change is so small that functions of it may hide theirs. */
+static bool is_slight(const nevh__wide x[], const nevh__wide y[]) {
+    static const double least = 1e-6;
+    return size_of(y[0] - x[0]) < least * (size_of(x[0]) + size_of(y[0]));
+}
+
 typedef enum { NO_JUMP, JUMP, UNKNOWN } verdict;
 
 /* Evaluates what reads a node that has been shifted, as long as something changes. */
@@ -185,10 +214,12 @@ static verdict follow_jump(states *s, int from, int *until) {
         bool same = jumps_same(before, to, size_of_parts(s, x));
         if (to[0] - to[0] != 0 || before[0] - before[0] != 0 ||
             is_doubtful(x, to) || is_doubtful(x, before) ||
-            (same && !cancels(s, x)))
+            (same && (!cancels(s, x) || s->lost[i])))
             found = UNKNOWN;
         else if (!same && s->is_root[i])
             found = JUMP;
+        else if (!same && is_slight(before, to))
+            found = UNKNOWN;
         else if (!same) {
             s->changed[i] = 1;
             *until = s->last[i] > *until ? s->last[i] : *until;
@@ -197,15 +228,17 @@ static verdict follow_jump(states *s, int from, int *until) {
     return found;
 }
 
+/* The value of a function that jumps behind its jump. */
+static void jumps_shift(states *s, int i, const nevh__wide before[]) {
+    bool whole = s->g->nodes[i].function == NEVH__FLOOR;
+    for (int copy = 0; copy < COPIES; copy++)
+        s->shifted[COPIES * (size_t)i + copy] =
+            before[copy] + (whole ? 1 : s->turn);
+}
+
 static verdict jumps_at_state(states *s, const nevh__graph_edge *e) {
     int from = e->jump, until = s->last[from];
-    unsigned function = s->g->nodes[from].function;
-    const nevh__wide *plain = s->plain + COPIES * (size_t)from;
-    for (int copy = 0; copy < COPIES; copy++)
-        s->shifted[COPIES * (size_t)from + copy] =
-            function == NEVH__SIGN    ? -plain[copy]
-            : function == NEVH__FLOOR ? plain[copy] + 1
-                                      : plain[copy] + s->turn;
+    jumps_shift(s, from, s->plain + COPIES * (size_t)from);
     s->changed[from] = 1;
     verdict found = s->is_root[from] ? JUMP : follow_jump(s, from, &until);
     memset(s->changed + from, 0, (size_t)(until - from) + 1);
@@ -222,8 +255,10 @@ static void go_to_state(states *s, int state) {
             to[0] = scattered(s, scale);
             for (int copy = 1; copy < COPIES; copy++)
                 to[copy] = to[0];
-        } else if (s->is_read[i])
+        } else if (s->is_read[i]) {
             jumps_evaluate(s, i, to);
+            s->lost[i] = loses(s, i);
+        }
     }
     s->work += COPIES * (double)s->used;
 }
@@ -244,10 +279,12 @@ static bool jumps_make(states *s, const int roots[], size_t count) {
     s->shifts = nevh__array(SHIFTS * used, sizeof *s->shifts);
     s->last = nevh__array(used, sizeof *s->last);
     s->changed = nevh__array(used, 1);
-    s->is_root = nevh__array(2 * used, 1);
+    s->is_root = nevh__array(4 * used, 1);
     if (!s->plain || !s->shifts || !s->last || !s->changed || !s->is_root)
         return false;
     s->is_read = s->is_root + used;
+    s->lost = s->is_read + used;
+    s->jumped = s->lost + used;
     s->shifted = s->plain + COPIES * used;
     for (size_t k = 0; k < count; k++)
         s->is_root[roots[k]] = 1;
@@ -263,6 +300,33 @@ static bool jumps_make(states *s, const int roots[], size_t count) {
             }
     }
     return true;
+}
+
+/* True if H has another value where all of the functions have jumped: each may be hidden
+   by another one, as in (floor(x) - 1)*(floor(y) - 1). */
+static bool jumps_together(states *s, const unsigned char jumps[]) {
+    bool apart = false;
+    memset(s->changed, 1, (size_t)s->used);
+    memset(s->jumped, 0, (size_t)s->used);
+    for (size_t k = 0; k < s->g->n_edges; k++)
+        if (s->g->edges[k].jump >= 0 && !jumps[k])
+            s->jumped[s->g->edges[k].jump] = 1;
+    for (int i = 0; i < s->used && !apart; i++) {
+        nevh__wide *to = s->shifted + COPIES * (size_t)i,
+                   *before = s->plain + COPIES * (size_t)i;
+        if (s->g->nodes[i].kind == NEVH__GRAPH_VARIABLE)
+            memcpy(to, before, COPIES * sizeof *to);
+        else if (s->is_read[i])
+            jumps_evaluate(s, i, to);
+        if (s->jumped[i])
+            jumps_shift(s, i, to);
+        apart = s->is_root[i] && to[0] - to[0] == 0 &&
+                before[0] - before[0] == 0 &&
+                !jumps_same(before, to, size_of_parts(s, &s->g->nodes[i]));
+    }
+    memset(s->changed, 0, (size_t)s->used);
+    s->work += 2 * COPIES * (double)s->used;
+    return apart;
 }
 
 /* States at which nothing jumps; enough of them say that H does not. */
@@ -284,8 +348,15 @@ void nevh__graph_find_jumps(nevh__graph *g, const int roots[], size_t count,
                                               : jumps[k] + (found == NO_JUMP));
         }
     }
+    bool apart = false;
     for (size_t k = 0; k < g->n_edges; k++)
         jumps[k] = jumps[k] < ENOUGH || jumps[k] == HAS_JUMP;
+    for (int state = 0; made && state < TRIED && !apart; state++) {
+        go_to_state(&s, state);
+        apart = jumps_together(&s, jumps);
+    }
+    for (size_t k = 0; k < g->n_edges; k++)
+        jumps[k] = jumps[k] || apart;
     g->failed = g->failed || !made;
     free(s.plain);
     free(s.shifts);
