@@ -183,15 +183,17 @@ static void forget_ranges(nevh_reference *r) {
    false where it does not keep H: it is that of other places than the orbit's, as
    on one side of a wall. */
 static int use_exact_or_series(nevh_reference *r, bool *kept) {
+    static const double poor = 1e-6;
     int status = use_exact(r, kept);
-    if (status || !*kept || !r->finest || r->error <= nevh__reference_wanted)
+    if (status || !*kept ||
+        r->error <= (r->finest ? nevh__reference_wanted : poor))
         return status;
     nevh__exact_solution *exact = r->exact;
     double error = r->error, whole = r->horizon;
     r->exact = NULL;
     forget_ranges(r);
     status = nevh__reference_series(r);
-    if (!status && r->horizon == whole && r->error < error) {
+    if (!status && r->error < error && (r->horizon == whole || error > poor)) {
         nevh__exact_free(exact);
         return NEVH_OK;
     }

@@ -148,6 +148,7 @@ nevh__pair_outcome nevh__pair_run(nevh__pair *b, double h, double most) {
         if (o.status ||
             have_separated(&past, i + 1, reference_pair_compare(b), most))
             break;
+        b->watch.t = r->t0 + (i + 0.5) * o.h;
         o.stepped_over = !nevh__watch_step(&b->watch, b->a, b->b);
         if (o.stepped_over)
             break;

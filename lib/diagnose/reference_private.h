@@ -58,11 +58,12 @@ typedef struct {
     size_t effect; /* which of the system's does most of it */
 } nevh__jump;
 
-/* The test that a run keeps H, if it should. */
+/* The test that a run keeps H, if it should, or passes no jump. */
 typedef struct {
     nevh_field *field; /* for values; NULL: it is not */
+    bool constant;     /* H is */
     size_t n;
-    double t0;
+    double t; /* of the step */
     const double *start;
     double *before, *between, *after; /* 2n each: the last state; to try */
     double *effects, *others;         /* of the system, each */
@@ -77,7 +78,7 @@ int nevh__watch_init(nevh__watch *, const nevh_reference *);
 void nevh__watch_clear(nevh__watch *);
 void nevh__watch_begin(nevh__watch *);
 /* False where H of the fine orbit has changed by far more than the orbits
-   differ; then `jump` tells where. */
+   differ, or jumps; then `jump` tells where. */
 bool nevh__watch_step(nevh__watch *, const double coarse[],
                       const double fine[]);
 /* Says that H jumps, near that time. */

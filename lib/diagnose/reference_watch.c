@@ -19,9 +19,10 @@ enum { HALVINGS = 40 }; /* to a place that is between two numbers, not one */
 int nevh__watch_init(nevh__watch *w, const nevh_reference *r) {
     size_t n = r->n, effects = nevh_system_effect_count(r->system);
     nevh_options o = {.gradient = &nevh__no_gradient};
-    *w = (nevh__watch){.n = n, .t0 = r->t0, .start = r->start};
-    if (!nevh__conserves_energy(r->system))
-        return NEVH_OK;
+    *w = (nevh__watch){.n = n,
+                       .t = r->t0,
+                       .start = r->start,
+                       .constant = nevh__conserves_energy(r->system)};
     w->field = nevh_field_new(r->system, &o);
     w->before = nevh__array(6 * n + 2 * effects, sizeof *w->before);
     if (!w->field || !w->before)
@@ -43,7 +44,7 @@ void nevh__watch_clear(nevh__watch *w) {
 static long double reference_watch_value(nevh__watch *w, const double z[],
                                          double *size) {
     double h = NAN, roundoff = 0;
-    if (nevh__field_moving_values(w->field, 1, &w->t0, z, z + w->n, &h,
+    if (nevh__field_moving_values(w->field, 1, &w->t, z, z + w->n, &h,
                                   &roundoff, size))
         return NAN;
     return (long double)h + roundoff;
@@ -71,9 +72,9 @@ static size_t find_effect(nevh__watch *w, const double after[], double low,
     size_t count = nevh_system_effect_count(w->field->system), found = 0;
     double most = 0;
     const double *z = between(w, after, low);
-    nevh__field_moving_effects(w->field, w->t0, z, z + w->n, w->effects);
+    nevh__field_moving_effects(w->field, w->t, z, z + w->n, w->effects);
     between(w, after, high);
-    nevh__field_moving_effects(w->field, w->t0, z, z + w->n, w->others);
+    nevh__field_moving_effects(w->field, w->t, z, z + w->n, w->others);
     for (size_t i = 0; i < count; i++) {
         double change = fabs(w->others[i] - w->effects[i]);
         found = change > most ? i : found;
@@ -107,6 +108,35 @@ static void find_jump(nevh__watch *w, const double after[], double allowed) {
     };
 }
 
+/* The same where H changes anyway: true if it changes by much within a small part of
+   the step, or jumps. */
+static bool has_jumped(nevh__watch *w, const double after[]) {
+    enum { FEW = 14 };
+    static const double steep = 0x1p-6, sudden = 0x1p-24;
+    double low = 0, high = 1, size = 0, most = 0;
+    long double h_low = reference_watch_value(w, between(w, after, 0), &size);
+    long double h_high = reference_watch_value(w, between(w, after, 1), &size);
+    bool found = false;
+    for (int i = 1; i <= HALVINGS && !found; i++) {
+        double middle = (low + high) / 2;
+        long double h =
+            reference_watch_value(w, between(w, after, middle), &size);
+        most = fmax(most, (double)fmaxl(fabsl(h - h_low), fabsl(h_high - h)));
+        bool lower = fabsl(h - h_low) > fabsl(h_high - h);
+        *(lower ? &high : &low) = middle;
+        *(lower ? &h_high : &h_low) = h;
+        double left = (double)fabsl(h_high - h_low);
+        found = (i == FEW && left > steep * most + rounding * size) ||
+                (i == HALVINGS && left > sudden * most + rounding * size);
+    }
+    w->jump =
+        (nevh__jump){.found = found,
+                     .by = (double)(h_high - h_low),
+                     .part = low,
+                     .effect = found ? find_effect(w, after, low, high) : 0};
+    return found;
+}
+
 /* The change of H by rounding each variable the other way: it is larger than the
    variable's digits suggest if the variable is small beside its own offset. */
 static double find_rounding(nevh__watch *w, const double z[]) {
@@ -132,6 +162,11 @@ bool nevh__watch_step(nevh__watch *w, const double coarse[],
     double size = 0;
     if (!w->field)
         return true;
+    if (!w->constant) {
+        bool jumped = has_jumped(w, fine);
+        memcpy(w->before, fine, 2 * w->n * sizeof *fine);
+        return !jumped;
+    }
     long double a = reference_watch_value(w, coarse, &size),
                 b = reference_watch_value(w, fine, &size);
     double change = (double)fabsl(b - w->h0);

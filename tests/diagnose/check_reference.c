@@ -91,6 +91,19 @@ TEST_EACH(series_replace_exact_solutions_of_too_few_digits,
     tear_down(&a);
 }
 
+/* On the separatrix the phase of sn is lost; series end where theirs is. */
+TEST(series_replace_exact_solutions_without_digits) {
+    const orbit o = {"q = 0\np_q = 2", "T = p_q^2/2\nV = -cos(q)", 0, 60};
+    setup a = refer_to(&o, NULL);
+    double q, p, t = 15;
+    ck_assert_int_eq(nevh_reference_status(a.reference), NEVH_OK);
+    ck_assert_double_lt(nevh_reference_error(a.reference), 1e-9);
+    ck_assert_double_lt(nevh_reference_horizon(a.reference), 60);
+    ck_assert_int_eq(nevh_reference_state(a.reference, t, &q, &p), NEVH_OK);
+    ck_assert_double_eq_tol(q, 2 * atan(sinh(t)), 1e-9);
+    tear_down(&a);
+}
+
 /* Nearly the same, or no such motion. */
 static const struct {
     const char *coordinates, *effects;

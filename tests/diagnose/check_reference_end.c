@@ -139,7 +139,8 @@ TEST(steps_are_no_longer_than_asked_for) {
     tear_down(&seeing);
 }
 
-/* Jumps of H that no derivative sees; the last are none, however steep. */
+/* Jumps of H that no derivative sees, of constant H and of others; the last are none,
+   however steep. */
 static const struct {
     const char *effects;
     bool jumps;
@@ -148,6 +149,16 @@ static const struct {
     {"T = p_x^2/2\nV = sign(x)", true, "by 2 near t = 0.333333"},
     {"T = p_x^2/2\nV = x^2/2 + x^4/4\nW = 1e-6*floor(x)", true, "effect \"W\""},
     {"T = p_x^2/2 + 0.1*sign(p_x - 2.5)\nV = x^2/2", true, "effect \"T\""},
+    {"T = p_x^2/2\nV = x^2/2 + 0.3*x/abs(x)\nD = 0.1*x*cos(t)", true,
+     "by 0.6 near t = 0.3"},
+    {"T = p_x^2/2\nV = x^2/2 + 0.3*tanh(1/x)\nD = 0.1*x*cos(t)", true,
+     "effect \"V\""},
+    {"T = p_x^2/2\nV = 0.3*min(1, max(-1, 1e9*x))\nD = 0.1*x*cos(t)", true,
+     "effect \"V\""},
+    {"T = p_x^2/2\nV = 0.3*x/abs(x)\n[friction]\nV = all: 0.1", true,
+     "effect \"V\""},
+    {"T = p_x^2/2\nV = x^2/2 + max(x, 0)^5\nD = 0.1*x*cos(t)", false, ""},
+    {"T = p_x^2/2\nV = x^2/2 + tanh(20*x)\nD = 0.1*x*cos(t)", false, ""},
     {"T = p_x^2/2\nV = tanh(20*x)", false, ""},
     {"T = p_x^2/2\nV = 1e12 + x^2/2 + x^4/4", false, ""},
     {"T = p_x^2/2\nV = x^2/2 + x^4/4\nW = 1e-6*max(x, 0)^5", false, ""},
