@@ -137,6 +137,10 @@ static void draw_orbit(plot *to, const run_picture *picture,
                : !few           ? PLOT_TRAIL
                : exact          ? PLOT_POINTS
                                 : PLOT_BOTH);
+    size_t count;
+    place_in_panel(c, k, &count);
+    if (count == 1)
+        plot_dash_apart(to, series);
     for (size_t i = 0; i < o->rows.count; i++) {
         const double *at = orbit_row(o, i);
         if (picture->rows || is_shown(o, &c->columns.item[k], at[-1]))

@@ -174,8 +174,18 @@ void plot_set_look(plot *p, size_t number, size_t look) {
     p->series[number].look = look;
 }
 
+enum { COLOURS = 8 }; /* see looks.h */
+
+void plot_dash_apart(plot *p, size_t number) {
+    size_t dash = 0;
+    for (size_t i = 0; i < number; i++)
+        dash += p->series[i].panel == p->series[number].panel &&
+                p->series[i].form == p->series[number].form &&
+                p->series[i].look % COLOURS == p->series[number].look % COLOURS;
+    plot_dash(p, number, dash);
+}
+
 void plot_integrator(plot *p, size_t number, const char *name) {
-    enum { COLOURS = 8 }; /* see looks.h: another of the same colour */
     size_t look = plot_look_of_integrator(name);
     series *own = &p->series[number];
     for (bool taken = true; taken; look += taken ? COLOURS : 0) {
@@ -190,7 +200,7 @@ void plot_integrator(plot *p, size_t number, const char *name) {
 }
 
 void plot_member(plot *p, size_t number, size_t member, size_t members) {
-    enum { COLOURS = 8, MARKS = 2 };
+    enum { MARKS = 2 };
     static const double usual = 0.6, least = 0.3;
     bool many = members > MARKS * COLOURS; /* rings would hide each other */
     double share = many ? (double)(MARKS * COLOURS) / (double)members : 1;

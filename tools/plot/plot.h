@@ -86,6 +86,8 @@ void plot_style(plot *, size_t series, plot_form);
 void plot_size(plot *, size_t series, double size); /* of its marks; 1: usual */
 void plot_dash(plot *, size_t series, size_t dash); /* 0: none */
 void plot_like(plot *, size_t series, size_t other); /* the same colour */
+/* Another dash than those before it in the panel that have its colour. */
+void plot_dash_apart(plot *, size_t series);
 void plot_point(plot *, size_t series, double x, double y);
 void plot_break(plot *, size_t series); /* the line ends */
 
