@@ -167,14 +167,21 @@ static void draw_bob(plot *to, const bob_list *b, size_t bob, const orbit *o,
     plot_point(to, series, at[0], at[1]);
 }
 
+/* NULL: the only one, which has none; to be freed. */
+static char *bob_name(const bob_list *b, size_t bob) {
+    const char *given = nevh_scene_part_at(b->scene, b->part[bob]).name;
+    bool on_rods = b->count < nevh_scene_part_count(b->scene);
+    return given          ? text_print("%s", given)
+           : b->count < 2 ? NULL
+           : on_rods      ? text_print("bob %zu", bob + 1)
+                          : text_print("body %zu", bob + 1);
+}
+
 static void name_bob(plot *to, const bob_list *b, size_t bob,
                      const double at[2]) {
-    const char *given = nevh_scene_part_at(b->scene, b->part[bob]).name;
-    if (!given && b->count < 2)
+    char *name = bob_name(b, bob);
+    if (!name)
         return;
-    bool on_rods = b->count < nevh_scene_part_count(b->scene);
-    char *name = given ? text_print("%s", given)
-                       : text_print(on_rods ? "bob %zu" : "body %zu", bob + 1);
     size_t series = plot_series(to, name);
     plot_style(to, series, PLOT_GUIDE);
     plot_point(to, series, at[0], at[1]);
@@ -225,15 +232,15 @@ static char *follow(run_picture *picture, bob_list *b) {
 }
 
 /* All panels show what rods reach, too. */
-static void set_window(plot *to, const run_picture *picture,
-                       const bob_list *b) {
+static void set_window(plot *to, const run_picture *picture, const bob_list *b,
+                       picture_range window[2]) {
     size_t columns[2][MOST_BOBS];
     for (size_t i = 0; i < b->count; i++) {
         columns[0][i] = 2 * i;
         columns[1][i] = 2 * i + 1;
     }
-    picture_range window[2] = {picture_extent(picture, columns[0], b->count),
-                               picture_extent(picture, columns[1], b->count)};
+    for (size_t k = 0; k < 2; k++)
+        window[k] = picture_extent(picture, columns[k], b->count);
     const orbit *o = picture_orbit(picture, 0);
     double values[4];
     for (size_t i = 0; i < nevh_scene_part_count(b->scene); i++) {
@@ -252,10 +259,31 @@ static void set_window(plot *to, const run_picture *picture,
     plot_span_y(to, window[1].low, window[1].high);
 }
 
+/* Adds what discs of an orbit are outside the window. */
+static void note_outside(const bob_list *b, const run_picture *picture,
+                         const orbit *o, const picture_range window[2],
+                         char **words) {
+    double at[4];
+    for (size_t bob = 0; bob < b->count; bob++) {
+        part(b->scene, b->part[bob], o->t, o->q, o->p, at);
+        if (at[0] >= window[0].low && at[0] <= window[0].high &&
+            at[1] >= window[1].low && at[1] <= window[1].high)
+            continue;
+        char *name = bob_name(b, bob);
+        text_extend(words, "; outside: %s%s%s",
+                    picture->orbits.count > 1 ? o->name : "",
+                    picture->orbits.count > 1 ? ", " : "",
+                    name ? name : "the body");
+        free(name);
+    }
+}
+
 plot *plot_configuration(run_picture *picture) {
     bob_list b = bobs_of(picture->plan.scene);
     orbit *first = picture->orbits.item;
     plot *to = NULL;
+    picture_range window[2];
+    char *outside = text_print("%s", "");
     char *cut = follow(picture, &b);
     picture_refer(picture, 2 * b.count, fill, &b);
     char *x = axis_label(&picture->plan, &b, 0),
@@ -268,16 +296,16 @@ plot *plot_configuration(run_picture *picture) {
             to = plot_new(picture->plan.title, x, y);
         if (!i)
             plot_heading(to, heading);
-        set_window(to, picture, &b);
+        set_window(to, picture, &b, window);
         draw(to, &b, picture_orbit(picture, i));
+        note_outside(&b, picture, picture_orbit(picture, i), window, &outside);
         free(heading);
     }
-    plot_columns(to, picture_columns(picture) > 4   ? 3
-                     : picture_columns(picture) > 3 ? 2
-                                                    : picture_columns(picture));
+    plot_columns(to, picture_across(picture));
     char *more =
-        text_print("circles: the start; discs: t = %.6g%s%s%s", first->t,
-                   picture->plan.unit, *cut ? "; " : "", cut);
+        text_print("circles: the start; discs: t = %.6g%s%s%s%s", first->t,
+                   picture->plan.unit, *cut ? "; " : "", cut, outside);
+    free(outside);
     free(cut);
     picture_note(picture, to, more);
     free(more);

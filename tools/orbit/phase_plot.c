@@ -211,7 +211,8 @@ plot *plot_phase(run_picture *picture) {
             column_panels_refer(picture, &c);
         for (size_t i = 0; i < c.panels; i++)
             draw_panels(&to, picture, &c, i);
-        plot_columns(to, picture_columns(picture));
+        plot_columns(to, c.panels > 1 ? picture_columns(picture)
+                                      : picture_across(picture));
         char *more = note_text(picture, cut);
         picture_note(picture, to, more);
         free(more);

@@ -97,6 +97,11 @@ size_t picture_columns(const run_picture *picture) {
     return picture->orbits.count + (picture->reference.rows.count > 1);
 }
 
+size_t picture_across(const run_picture *picture) {
+    size_t all = picture_columns(picture);
+    return all > 4 ? 3 : all > 3 ? 2 : all;
+}
+
 const orbit *picture_orbit(const run_picture *picture, size_t column) {
     bool refers = picture->reference.rows.count > 1;
     return refers && column == 0 ? &picture->reference
@@ -187,13 +192,34 @@ void picture_measured(const run_picture *picture, plot *to, const char *name,
     }
 }
 
+static bool has_one_integrator(const orbits *all) {
+    bool same = true;
+    for (size_t i = 1; i < all->count; i++)
+        same =
+            same && strcmp(all->item[i].integrator, all->item->integrator) == 0;
+    return same;
+}
+
+char *picture_early(const run_picture *picture) {
+    char *text = text_print("%s", "");
+    for (size_t i = 0; i < picture->orbits.count; i++) {
+        const orbit *o = &picture->orbits.item[i];
+        if (o->status)
+            text_extend(&text, "%s%s ended at t = %.4g%s", *text ? "; " : "",
+                        picture->orbits.count > 1 ? o->name : o->integrator,
+                        o->t, picture->plan.unit);
+    }
+    return text;
+}
+
 void picture_note(const run_picture *picture, plot *to, const char *more) {
     const orbits *all = &picture->orbits;
     char *scheme =
         all->count == 1 ? plot_scheme(&all->item->plan, all->item->integrator)
         : picture->plan.dts == 1 || picture->options->dt.count <= 1
             ? text_print("dt = %.4g%s", picture->plan.dt[0], picture->plan.unit)
-            : text_print("%s", all->item->integrator);
+        : has_one_integrator(all) ? text_print("%s", all->item->integrator)
+                                  : NULL;
     char *others = list_joined(&all->left_out);
     char *text = text_print("%s%s%s", *others ? "not drawn: " : "", others,
                             *others && *more ? "; " : "");

@@ -167,6 +167,20 @@ static char *panel_label(const run_picture *picture, const column_panels *c,
     return text;
 }
 
+/* Before the end of the run where all have ended early. */
+static double last_time(const run_picture *picture) {
+    const nevh_scene_run *run = picture->plan.run;
+    double end = picture->plan.t_end, last = run->t_start;
+    bool early = true;
+    for (size_t i = 0; i < picture->orbits.count; i++) {
+        const orbit *o = &picture->orbits.item[i];
+        early = early && o->status;
+        last =
+            fabs(o->t - run->t_start) > fabs(last - run->t_start) ? o->t : last;
+    }
+    return early && last != run->t_start ? last : end;
+}
+
 static void draw_panel(plot **to, run_picture *picture, column_panels *c,
                        size_t panel, bool exact) {
     char *x = plot_label(&picture->plan, "t", "t");
@@ -175,7 +189,7 @@ static void draw_panel(plot **to, run_picture *picture, column_panels *c,
         plot_panel(*to, NULL, x, y);
     else
         *to = plot_new(picture->plan.title, x, y);
-    plot_span_x(*to, picture->plan.run->t_start, picture->plan.t_end);
+    plot_span_x(*to, picture->plan.run->t_start, last_time(picture));
     for (size_t k = 0; k < c->columns.count && exact; k++)
         if (c->panel[k] == panel &&
             c->columns.item[k].kind != COLUMN_SHADOW_ERROR)
@@ -218,6 +232,9 @@ plot *plot_time(run_picture *picture) {
         for (size_t i = 0; i < c.panels; i++)
             draw_panel(&to, picture, &c, i, exact);
         plot_stack(to);
+        char *early = picture_early(picture);
+        text_extend(&more, "%s%s", *more && *early ? "; " : "", early);
+        free(early);
         picture_note(picture, to, more);
         free(more);
     }

@@ -112,9 +112,15 @@ static void join_name(guide_name *name) {
                             name->from.y + disc * y / distance};
 }
 
+static bool is_outside(const plot_screen *on, pair at) {
+    return !(at.x >= 0 && at.x <= on->width && at.y >= 0 && at.y <= on->height);
+}
+
 static bool place_name(const plot *p, const series *s, const plot_screen *on,
                        double right, const guide_name *others, size_t count,
                        guide_name *to) {
+    if (s->count < 2 && is_outside(on, plot_in_pixels(on, s->point[0])))
+        return false;
     bool placed = place_beside(p, s, on, right, true, others, count, to) ||
                   place_beside(p, s, on, right, false, others, count, to);
     if (placed && s->count < 2)
