@@ -39,6 +39,25 @@ static void draw_row(plot *to, const plan *p, const row *r) {
     free(name);
 }
 
+/* Adds the rows that failed, which have no curve. */
+static void note_failed(const plan *p, const row rows[], size_t count,
+                        char **words) {
+    bool any = false;
+    for (size_t i = 0; i < count; i++) {
+        const row *r = &rows[i];
+        if (!r->failed || r->ran)
+            continue;
+        char *step = heading(p, r);
+        text_extend(words, "%s%s, %s",
+                    any       ? "; "
+                    : **words ? "; failed: "
+                              : "failed: ",
+                    r->integrator, step);
+        any = true;
+        free(step);
+    }
+}
+
 int compare_plot(const options *o, const plan *p, const row rows[],
                  size_t count) {
     plot *to = NULL;
@@ -60,6 +79,7 @@ int compare_plot(const options *o, const plan *p, const row rows[],
     }
     plot_same_ranges(to, INFINITY);
     char *more = energy_plot_words(p);
+    note_failed(p, rows, count, &more);
     plot_note_run(to, p, NULL, more);
     free(more);
     int status = plot_write(to, o);
