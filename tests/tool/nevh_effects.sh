@@ -92,6 +92,8 @@ says 'with --impact --plot'
 
 # Without what moves coordinates there is no orbit to compare with; without a
 # force, from rest, there is one.
+exits 0 effects earth-halley --impact
+has '^verlet at dt = 0.4: half the step changes the state at the end by [1-9].*e[-+]0[01]'
 exits 0 effects pendulum --impact --t-end 10
 has '^Without kinetic no coordinate moves'
 has '^ kinetic +on +verlet +[0-9.]+ +[0-9.]+ +0$'

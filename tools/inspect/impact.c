@@ -259,11 +259,32 @@ static void chaos_words(const plan *p, list *words) {
     free(found.failure);
 }
 
+/* Tells what the step alone does to the orbit. */
+static void step_words(plan *p, const char *integrator, list *words) {
+    enum { FEW = 2 };
+    static const double nothing = 1e-6;
+    const double *dt = p->dt, shorter = dt[0] / 2;
+    trace whole = trace_sampled(p, integrator, FEW);
+    p->dt = &shorter;
+    trace half = trace_sampled(p, integrator, FEW);
+    p->dt = dt;
+    difference d = trace_difference(&whole, &half);
+    if (!whole.status && !half.status && d.at_end > nothing)
+        list_print(
+            words,
+            "%s at dt = %g: half the step changes the state at the end "
+            "by %.1e.  A difference that is no larger may be the step's.",
+            integrator, dt[0], d.at_end);
+    trace_free(&whole);
+    trace_free(&half);
+}
+
 /* returns  TOOL_FAILED where no effect could be compared, since runs failed */
 static int add_all(const options *o, plan *p, page *result, plot **to) {
     size_t count = nevh_system_effect_count(p->system);
     double scale = plan_energy_scale(p);
     bool apart = false, ran = false;
+    const char *used = NULL;
     char *why = NULL;
     for (size_t i = 0; i < count; i++) {
         char *effect = text_print("%s", nevh_system_effect_name(p->system, i));
@@ -277,6 +298,7 @@ static int add_all(const options *o, plan *p, page *result, plot **to) {
         if (plot_wanted(o) && b.ran)
             draw(to, p, effect, &b);
         ran |= b.ran;
+        used = b.ran ? b.integrator : used;
         if (b.integrator && !b.ran && !why)
             why = text_print("%s", b.trace[!b.trace[0].status].message);
         free_both(&b);
@@ -285,6 +307,8 @@ static int add_all(const options *o, plan *p, page *result, plot **to) {
     }
     if (apart)
         chaos_words(p, &result->after);
+    if (used)
+        step_words(p, used, &result->after);
     bool failed = why && !ran;
     if (failed)
         tool_refuse("%s: no effect can be compared: the run fails: %s", p->name,
