@@ -64,11 +64,23 @@ static size_t new_series(plot *to, const char *name, plot_form form,
     return series;
 }
 
+/* "swing: phi1 = 0, rising"; to be freed. */
+static char *plane_of(const nevh_scene_section *decl) {
+    if (decl->every > 0)
+        return text_print("%s: every %.6g", decl->name, decl->every);
+    return text_print("%s: %s = %s%s", decl->name, decl->left, decl->right,
+                      decl->direction > 0   ? ", rising"
+                      : decl->direction < 0 ? ", falling"
+                                            : "");
+}
+
 static void add_panel(plot **to, const plan *p, const nevh_scene_section *decl,
                       size_t points, const char *across, const char *up,
                       const char *own) {
+    char *plane = plane_of(decl);
     char *heading =
-        text_print(points ? "%s" : "%s: no points", own ? own : decl->name);
+        text_print(points ? "%s" : "%s; no points", own ? own : plane);
+    free(plane);
     char *x = plot_label(p, across, across), *y = plot_label(p, up, up);
     if (!*to) {
         *to = plot_new(p->title, x, y);
