@@ -218,10 +218,13 @@ static char *area_words(const flow_job *j, const flow_row *r) {
         last = at;
         worst = fmax(worst, fabs(at.area / first - 1));
     }
+    /* Of several planes the sum is kept, not the area that is drawn. */
+    const char *area = j->plan.n > 1 ? "sum of areas" : "area";
     return isnan(last.area) ? text_print("area unresolved")
            : worst < nothing
-               ? text_print("area kept until t = %.4g%s", last.t, j->plan.unit)
-               : text_print("area \303\227 %.4g until t = %.4g%s",
+               ? text_print("%s kept until t = %.4g%s", area, last.t,
+                            j->plan.unit)
+               : text_print("%s \303\227 %.4g until t = %.4g%s", area,
                             last.area / first, last.t, j->plan.unit);
 }
 
@@ -291,7 +294,8 @@ int flow_plot(const flow_job *j, const options *o) {
     if (!to)
         return tool_refuse("nothing to plot: no integrator fits");
     char *more = text_print(
-        "%s at the times named; area over the first%s", j->shape.text,
+        "%s at the times named; area over the first%s%s", j->shape.text,
+        j->plan.n > 1 ? ", summed over all planes, of which one is drawn" : "",
         left_out ? "; shapes that are long threads are not drawn" : "");
     plot_note_run(to, &j->plan, NULL, more);
     free(more);
