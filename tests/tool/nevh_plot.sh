@@ -103,7 +103,7 @@ done
 draws section damped-driven-pendulum --t-end 4000 --plot $svg \
     --keep-plot-script $work/out.gp -o $work/points.csv
 test -s $work/out && fails "prints"
-shows strobe
+shows 'strobe: every 9.42478'
 shows 'phi (rad)'
 shows p_phi
 shows 'verlet, dt = 0.1; gradient central4; t = 0 ... 4000; H = -1.28007 at the start'
@@ -135,7 +135,7 @@ draws portrait henon-heiles --integrators verlet,rk4 --t-end 60 --plot $svg
 test "$(texts | grep -c '^start y = ')" = 16 || fails "has other starts in another panel"
 # One degree of freedom: what crosses is 0 at all points, so time is across.
 draws section pendulum --t-end 100 --plot $svg
-for text in swing 't (s)' 'p_phi (J s)'; do shows "$text"; done
+for text in 'swing: phi = 0, rising' 't (s)' 'p_phi (J s)'; do shows "$text"; done
 # A section without points says so, and a picture of none why.
 cat >$work/far.nevh <<'END'
 [coordinates]
@@ -154,7 +154,7 @@ dt = 0.01
 integrators = verlet
 END
 draws section $work/far.nevh --plot $svg
-shows 'none: no points'
+shows 'none: theta = 2, rising; no points'
 exits 2 section $work/far.nevh --section none --plot $work/none.svg
 says 'nothing to plot: section none: 0 points: theta stays in 0 \.\.\. 1 rad$|-[0-9.e-]* \.\.\. 1 rad$'
 test -e $work/none.svg && fails "draws nothing to a file"

@@ -218,7 +218,7 @@ static char *area_words(const flow_job *j, const flow_row *r) {
         last = at;
         worst = fmax(worst, fabs(at.area / first - 1));
     }
-    /* Of several planes the sum is kept, not the area that is drawn. */
+    /* The sum is kept, not the area of the plane that is drawn. */
     const char *area = j->plan.n > 1 ? "sum of areas" : "area";
     return isnan(last.area) ? text_print("area unresolved")
            : worst < nothing

@@ -72,11 +72,26 @@ static char *follow_and_cut(run_picture *picture, column_panels *c) {
     return words ? words : text_print("%s", "");
 }
 
-static void draw_reference(plot *to, const orbit *o, size_t k) {
+/* The value from which a column is drawn: the energy at the start, where its changes
+   are too small beside it for the numbers of an axis; else 0. */
+static double base_of(const run_picture *picture, const column_panels *c,
+                      size_t k) {
+    static const double small = 1e-4;
+    const orbits *all = &picture->orbits;
+    if (c->columns.item[k].kind != COLUMN_ENERGY || !all->item->rows.count)
+        return 0;
+    double start = orbit_row(all->item, 0)[k], most = 0;
+    for (size_t i = 0; i < all->count; i++)
+        for (size_t j = 0; j < all->item[i].rows.count; j++)
+            most = fmax(most, fabs(orbit_row(&all->item[i], j)[k] - start));
+    return most < small * fabs(start) ? start : 0;
+}
+
+static void draw_reference(plot *to, const orbit *o, size_t k, double base) {
     size_t series = plot_series(to, o->name);
     plot_style(to, series, PLOT_BEHIND);
     for (size_t i = 0; i < o->rows.count; i++)
-        plot_point(to, series, orbit_row(o, i)[-1], orbit_row(o, i)[k]);
+        plot_point(to, series, orbit_row(o, i)[-1], orbit_row(o, i)[k] - base);
 }
 
 /* Which of the columns of its panel it is, and of how many. */
@@ -132,6 +147,7 @@ static void draw_orbit(plot *to, const run_picture *picture,
     const orbit *o = &picture->orbits.item[number];
     size_t series = new_series(to, picture, c, k, number, exact);
     bool few = picture->rows && o->rows.count <= FEW_ROWS;
+    double base = base_of(picture, c, k);
     plot_style(to, series,
                o->rows.part < 1 ? PLOT_DOTS
                : !few           ? PLOT_TRAIL
@@ -144,7 +160,7 @@ static void draw_orbit(plot *to, const run_picture *picture,
     for (size_t i = 0; i < o->rows.count; i++) {
         const double *at = orbit_row(o, i);
         if (picture->rows || is_shown(o, &c->columns.item[k], at[-1]))
-            plot_point(to, series, at[-1], at[k]);
+            plot_point(to, series, at[-1], at[k] - base);
     }
 }
 
@@ -159,7 +175,11 @@ static char *panel_label(const run_picture *picture, const column_panels *c,
         if (c->panel[k] != panel)
             continue;
         size_t count, place = place_in_panel(c, k, &count);
-        char *label = column_label(&picture->plan, &c->columns.item[k]);
+        const quantity *what = &c->columns.item[k];
+        char *label =
+            base_of(picture, c, k) != 0
+                ? plot_label(&picture->plan, "energy change", what->name)
+                : column_label(&picture->plan, what);
         text_extend(&text, "%s%s%s", text ? ", " : "", label,
                     several && place < 5 ? dashes[place] : "");
         free(label);
@@ -193,7 +213,7 @@ static void draw_panel(plot **to, run_picture *picture, column_panels *c,
     for (size_t k = 0; k < c->columns.count && exact; k++)
         if (c->panel[k] == panel &&
             c->columns.item[k].kind != COLUMN_SHADOW_ERROR)
-            draw_reference(*to, &picture->reference, k);
+            draw_reference(*to, &picture->reference, k, base_of(picture, c, k));
     for (size_t k = 0; k < c->columns.count; k++)
         for (size_t i = 0; i < picture->orbits.count && c->panel[k] == panel;
              i++)
