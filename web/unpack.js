@@ -1,8 +1,9 @@
 // nevh: a live page.  The scripts below are compressed; they are in nevh's
 // sources, in web/.  SPDX-License-Identifier: GPL-3.0-or-later
 "use strict";
-const nevhUnpack = (id) => {
-  const [length, text] = document.getElementById(id).textContent.split(" ");
+// "LENGTH LETTERS", as kit.sh writes them, as bytes.
+const nevhBytes = (packed) => {
+  const [length, text] = packed.split(" ");
   const bytes = new Uint8Array(+length + 2);
   const value = (i) => text.charCodeAt(i) - 35 - (text.charCodeAt(i) > 60);
   for (let i = 0, n = 0, bits = 0, left = 0; i < text.length; i += 2) {
@@ -12,7 +13,11 @@ const nevhUnpack = (id) => {
       bits >>= 8;
     }
   }
-  const stream = new Blob([bytes.subarray(0, length)]).stream()
+  return bytes.subarray(0, +length);
+};
+const nevhUnpack = (id) => {
+  const bytes = nevhBytes(document.getElementById(id).textContent);
+  const stream = new Blob([bytes]).stream()
     .pipeThrough(new DecompressionStream("gzip"));
   return new Response(stream);
 };

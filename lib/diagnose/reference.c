@@ -179,7 +179,8 @@ static void forget_ranges(nevh_reference *r) {
 }
 
 /* Series in place of an exact solution whose constants, or phase, have too few
-   digits; the solution where series are no better, or cost too much.  *kept is
+   digits; the solution where series are no better, or cost too much.  Series may end
+   earlier where the solution has less than six digits.  *kept is
    false where it does not keep H: it is that of other places than the orbit's, as
    on one side of a wall. */
 static int use_exact_or_series(nevh_reference *r, bool *kept) {
@@ -221,7 +222,7 @@ static int use_run(nevh_reference *r) {
     bool dear = !r->integrator && strstr(r->report.text, "cost too much");
     if (ended.status == NEVH_EDOM && r->may_jump &&
         !nevh__conserves_energy(r->system))
-        return ended.status; /* H would tell of a jump if it were constant */
+        return ended.status; /* a step may pass two jumps that cancel */
     r->report = (nevh__report){0};
     if (!r->integrator)
         r->integrator =

@@ -28,7 +28,7 @@ typedef struct {
     double reached; /* time since t0, of either sign */
     double error;
     bool whole;        /* they came to the end */
-    bool stepped_over; /* H changed, and not by what they differ */
+    bool stepped_over; /* H changed, and not by what they differ, or jumped */
 } nevh__pair_outcome;
 
 /* The error of one step from the start, relative to what it changes, and to the

@@ -70,9 +70,12 @@ static int give_up_jump(const nevh__pair *b, const nevh__pair_outcome *o) {
     if (j->found)
         return nevh__watch_fail(r, j, t);
     return nevh__fail(&r->report, NEVH_EFAILED,
-                      "%s does not keep H: it changes by %.3g near t = %.6g, "
-                      "mostly in effect \"%s\", at steps of %.3g",
-                      nevh_integrator_name(r->integrator), b->watch.changed, t,
+                      "%s %s by %.3g near t = %.6g, mostly in effect \"%s\", "
+                      "at steps of %.3g",
+                      nevh_integrator_name(r->integrator),
+                      b->watch.constant ? "does not keep H: it changes"
+                                        : "steps over a change of H",
+                      b->watch.changed, t,
                       nevh_system_effect_name(r->system, j->effect),
                       fabs(o->h) / 2);
 }

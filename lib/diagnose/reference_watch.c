@@ -83,58 +83,78 @@ static size_t find_effect(nevh__watch *w, const double after[], double low,
     return found;
 }
 
-/* Between two states: into the half over which H changes more, again and
-   again.  What is left of the change is a jump, if it is no less than that of the
-   whole run: after steps over a wall H may change by rounding alone. */
-static void find_jump(nevh__watch *w, const double after[], double allowed) {
-    static const double part = 0.25;
-    double low = 0, high = 1, size;
-    long double h_low = reference_watch_value(w, between(w, after, 0), &size);
-    long double h_high = reference_watch_value(w, between(w, after, 1), &size);
-    long double all = fabsl(h_high - h_low);
-    for (int i = 0; i < HALVINGS; i++) {
-        double middle = (low + high) / 2;
-        long double h =
-            reference_watch_value(w, between(w, after, middle), &size);
-        bool lower = fabsl(h - h_low) > fabsl(h_high - h);
-        *(lower ? &high : &low) = middle;
-        *(lower ? &h_high : &h_low) = h;
-    }
+/* A part of the step, and H at its ends. */
+typedef struct {
+    double low, high;
+    long double h_low, h_high;
+} stretch;
+
+static stretch whole_step(nevh__watch *w, const double after[]) {
+    stretch s = {0, 1, 0, 0};
+    double size;
+    s.h_low = reference_watch_value(w, between(w, after, 0), &size);
+    s.h_high = reference_watch_value(w, between(w, after, 1), &size);
+    return s;
+}
+
+static double change_in(const stretch *s) {
+    return (double)fabsl(s->h_high - s->h_low);
+}
+
+/* Into the half over which H changes more. */
+static void halve(nevh__watch *w, const double after[], stretch *s) {
+    double middle = (s->low + s->high) / 2, size;
+    long double h = reference_watch_value(w, between(w, after, middle), &size);
+    bool upper = fabsl(s->h_high - h) >= fabsl(h - s->h_low);
+    *(upper ? &s->low : &s->high) = middle;
+    *(upper ? &s->h_low : &s->h_high) = h;
+}
+
+static void note_jump(nevh__watch *w, const double after[], const stretch *s,
+                      bool found) {
     w->jump = (nevh__jump){
-        .found = fabsl(h_high - h_low) > part * fmaxl(all, allowed),
-        .by = (double)(h_high - h_low),
-        .part = low,
-        .effect = find_effect(w, after, low, high),
+        .found = found,
+        .by = (double)(s->h_high - s->h_low),
+        .part = s->low,
+        .effect = find_effect(w, after, s->low, s->high),
     };
 }
 
-/* The same where H changes anyway: true if it changes by much within a small part of
-   the step, or jumps. */
+/* Finds the jump of a constant H.  What is left of its change over ever shorter
+   stretches is a jump, if it is no less than that of the whole run: after steps over a
+   wall H may change by rounding alone. */
+static void find_jump(nevh__watch *w, const double after[], double allowed) {
+    static const double part = 0.25;
+    stretch s = whole_step(w, after);
+    double all = change_in(&s);
+    for (int i = 0; i < HALVINGS; i++)
+        halve(w, after, &s);
+    note_jump(w, after, &s, change_in(&s) > part * fmax(all, allowed));
+}
+
+/* True if H, which is not constant, jumps: such a change does not fall over ever
+   shorter stretches; or if 1/64 of its change, or more, is within 2^-14 of the step,
+   where 2^-12 would be usual: shorter steps may follow that. */
 static bool has_jumped(nevh__watch *w, const double after[]) {
-    enum { FEW = 14 };
-    static const double steep = 0x1p-6, sudden = 0x1p-24;
-    double low = 0, high = 1, size = 0, most = 0;
-    long double h_low = reference_watch_value(w, between(w, after, 0), &size);
-    long double h_high = reference_watch_value(w, between(w, after, 1), &size);
-    bool found = false;
-    for (int i = 1; i <= HALVINGS && !found; i++) {
-        double middle = (low + high) / 2;
-        long double h =
-            reference_watch_value(w, between(w, after, middle), &size);
-        most = fmax(most, (double)fmaxl(fabsl(h - h_low), fabsl(h_high - h)));
-        bool lower = fabsl(h - h_low) > fabsl(h_high - h);
-        *(lower ? &high : &low) = middle;
-        *(lower ? &h_high : &h_low) = h;
-        double left = (double)fabsl(h_high - h_low);
-        found = (i == FEW && left > steep * most + rounding * size) ||
-                (i == HALVINGS && left > sudden * most + rounding * size);
+    enum { SHORT = 14, SHORTER = 30 };
+    static const double steep = 0x1p-6, part = 0.25;
+    stretch s = whole_step(w, after), there = s;
+    double most = change_in(&s), before = 0;
+    bool within = false;
+    for (int i = 1; i <= HALVINGS; i++) {
+        halve(w, after, &s);
+        double left = change_in(&s);
+        most = fmax(most, left);
+        if (i == SHORT && left > steep * most + rounding * w->size)
+            within = true, there = s;
+        before = i == SHORTER ? left : before;
     }
-    w->jump =
-        (nevh__jump){.found = found,
-                     .by = (double)(h_high - h_low),
-                     .part = low,
-                     .effect = found ? find_effect(w, after, low, high) : 0};
-    return found;
+    double left = change_in(&s);
+    bool jumps = left > part * before && left > rounding * w->size;
+    if (jumps || within)
+        note_jump(w, after, jumps ? &s : &there, jumps);
+    w->changed = fabs(w->jump.by);
+    return jumps || within;
 }
 
 /* The change of H by rounding each variable the other way: it is larger than the
@@ -163,6 +183,8 @@ bool nevh__watch_step(nevh__watch *w, const double coarse[],
     if (!w->field)
         return true;
     if (!w->constant) {
+        reference_watch_value(w, fine, &size);
+        w->size = fmax(w->size, size);
         bool jumped = has_jumped(w, fine);
         memcpy(w->before, fine, 2 * w->n * sizeof *fine);
         return !jumped;
@@ -211,7 +233,7 @@ int nevh__watch_exact(nevh_reference *r, bool *kept) {
     double part = (r->t1 - r->t0) / TIMES;
     if (!status)
         nevh__watch_begin(&w);
-    for (int i = 1; !status && *kept && w.field && i <= TIMES; i++) {
+    for (int i = 1; !status && *kept && w.constant && i <= TIMES; i++) {
         memcpy(w.after, exact_at(r, &w, i * part), 2 * w.n * sizeof *w.after);
         *kept = nevh__watch_step(&w, w.after, w.after);
     }

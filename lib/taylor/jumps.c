@@ -5,6 +5,7 @@
    read whole periods of the change, and two that change may cancel in a sum or product;
    any other function that does not show the change may show it at other states.  Jumps
    that H has of two at one place, such as floor(x + 1) - floor(x), count as jumps.
+   Those that H does not have are tried together, too: if H has one then, all count.
    Some numbers of H are rounded, such as 6.283185307179586: what a change of their
    last digit explains is no difference.
    SPDX-License-Identifier: GPL-3.0-or-later */
@@ -24,9 +25,9 @@ typedef struct {
     int used;
     nevh__wide *plain, *shifted; /* COPIES a node; shifted: of changed nodes */
     int *last;                   /* the last node that reads a node */
-    double *
-        shifts; /* from -1 to 1, of a size of 1/2 at least; SHIFTS a node, 0 of a
-                       number that is meant as it is */
+    /* From -1 to 1, of a size of 1/2 at least: SHIFTS a node; 0 of a number that is
+       meant as it is. */
+    double *shifts;
     unsigned char *changed, *is_root, *is_read; /* is_read: by H */
     unsigned char *lost;   /* true of what hides a summand at the state */
     unsigned char *jumped; /* the functions that jump together */
@@ -78,7 +79,8 @@ static bool is_rounded(nevh__wide x) {
     return is_whole(digits) && !is_whole(digits * (nevh__wide)short_part);
 }
 
-/* copy   not 0 */
+/* The shift of a node in a changed copy.
+   again  the second one: of what has jumped */
 static double shift_of(const states *s, int i, int copy, bool again) {
     return s->shifts[SHIFTS * i + 2 * (copy - 1) + again];
 }
@@ -170,24 +172,23 @@ static bool is_doubtful(const nevh__graph_node *x, const nevh__wide y[]) {
 }
 
 /* True if a part of the node is hidden in what it reads: a summand that is far smaller
-   than the other one, or the argument of a function that has saturated. */
+   than the other one, a number too small for any digits, or the argument of a function
+   that has saturated. */
 static bool loses(const states *s, int i) {
     static const double least = 1e-10;
     const nevh__graph_node *x = &s->g->nodes[i];
     double y = fabs((double)s->plain[COPIES * (size_t)i]);
+    double a = x->a >= 0 ? fabs((double)jumps_values(s, x->a)[0]) : 1;
+    double b = x->b >= 0 ? fabs((double)jumps_values(s, x->b)[0]) : 1;
     bool lost = (x->a >= 0 && s->lost[x->a]) || (x->b >= 0 && s->lost[x->b]);
-    if (x->kind == NEVH__GRAPH_ADD) {
-        double a = fabs((double)jumps_values(s, x->a)[0]);
-        double b = fabs((double)jumps_values(s, x->b)[0]);
-        bool half = s->g->nodes[x->a].function == NEVH__NOTHING ||
-                    s->g->nodes[x->b].function == NEVH__NOTHING;
-        return lost || (fmin(a, b) <= least * fmax(a, b) && !half);
-    }
+    if (x->kind == NEVH__GRAPH_ADD)
+        return lost || (fmin(a, b) > 0 && fmin(a, b) <= least * fmax(a, b));
     if (x->kind == NEVH__GRAPH_CALL && x->function == NEVH__TANH)
         return lost || 1 - y < least;
     if (x->kind == NEVH__GRAPH_CALL && x->function == NEVH__ATAN)
-        return lost || fabs((double)jumps_values(s, x->a)[0]) > 1 / least;
-    return lost;
+        return lost || a > 1 / least;
+    bool vanishes = x->kind != NEVH__GRAPH_CALL || x->function == NEVH__EXP;
+    return lost || (vanishes && y == 0 && a > 0 && b > 0);
 }
 
 /* True if a change is so small that functions of it may hide theirs. */
@@ -228,7 +229,7 @@ static verdict follow_jump(states *s, int from, int *until) {
     return found;
 }
 
-/* The value of a function that jumps behind its jump. */
+/* Gives a function that jumps its value behind the jump. */
 static void jumps_shift(states *s, int i, const nevh__wide before[]) {
     bool whole = s->g->nodes[i].function == NEVH__FLOOR;
     for (int copy = 0; copy < COPIES; copy++)
@@ -325,7 +326,6 @@ static bool jumps_together(states *s, const unsigned char jumps[]) {
                 !jumps_same(before, to, size_of_parts(s, &s->g->nodes[i]));
     }
     memset(s->changed, 0, (size_t)s->used);
-    s->work += 2 * COPIES * (double)s->used;
     return apart;
 }
 
@@ -349,9 +349,12 @@ void nevh__graph_find_jumps(nevh__graph *g, const int roots[], size_t count,
         }
     }
     bool apart = false;
+    size_t several = 0;
     for (size_t k = 0; k < g->n_edges; k++)
         jumps[k] = jumps[k] < ENOUGH || jumps[k] == HAS_JUMP;
-    for (int state = 0; made && state < TRIED && !apart; state++) {
+    for (size_t k = 0; k < g->n_edges; k++)
+        several += g->edges[k].jump >= 0 && !jumps[k];
+    for (int state = 0; several > 1 && state < TRIED && !apart; state++) {
         go_to_state(&s, state);
         apart = jumps_together(&s, jumps);
     }

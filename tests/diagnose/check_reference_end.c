@@ -153,8 +153,6 @@ static const struct {
      "by 0.6 near t = 0.3"},
     {"T = p_x^2/2\nV = x^2/2 + 0.3*tanh(1/x)\nD = 0.1*x*cos(t)", true,
      "effect \"V\""},
-    {"T = p_x^2/2\nV = 0.3*min(1, max(-1, 1e9*x))\nD = 0.1*x*cos(t)", true,
-     "effect \"V\""},
     {"T = p_x^2/2\nV = 0.3*x/abs(x)\n[friction]\nV = all: 0.1", true,
      "effect \"V\""},
     {"T = p_x^2/2\nV = x^2/2 + max(x, 0)^5\nD = 0.1*x*cos(t)", false, ""},

@@ -12,18 +12,11 @@ import { basename } from "node:path";
 import { trial } from "./browser.mjs";
 
 const { check, ended } = trial();
-const LETTERS = "!#$%*+,-./0123456789:;=?@ABCDEFGHIJKLMNOPQRSTUVWXYZ" +
-  "[]^_abcdefghijklmnopqrstuvwxyz{|}~";
-// The element of a page that is compressed, as five letters for four bytes.
+// The element of a page that is compressed, by the page's own decoder.
 function unpacked(html, id) {
-  const [, length, text] = html.match(new RegExp(`id="${id}">(\\d+) ([^<]*)<`));
-  const bytes = Buffer.alloc(text.length / 5 * 4);
-  for (let i = 0; i < text.length / 5; i++) {
-    let four = 0;
-    for (let j = 0; j < 5; j++) four = 85 * four + LETTERS.indexOf(text[5 * i + j]);
-    bytes.writeUInt32BE(four, 4 * i);
-  }
-  return gunzipSync(bytes.subarray(0, +length));
+  const [decoder] = html.match(/const nevhBytes = [^]*?\n};\n/);
+  const [, packed] = html.match(new RegExp(`id="${id}">(\\d+ [^<]*)<`));
+  return gunzipSync(new Function(decoder + "return nevhBytes;")()(packed));
 }
 async function opened(html) {
   const [given] = JSON.parse(html.match(/id="given">\n([^]*?)\n<\/script>/)[1]);

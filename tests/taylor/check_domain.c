@@ -140,6 +140,8 @@ static const struct {
      "exp(-mod(x, 2*pi))*exp(mod(x, 2*pi))*cos(x) + (mod(x, 1) + floor(x))^2",
      "cos(x) + x^2"},
     {"x = 1", "abs(x)*abs(x) + cosh(abs(x))", "x^2 + cosh(x)"},
+    {"x = 1\ny = 0.3", "x^2 + y^2 + cos(mod(x, 1e3*pi) - mod(y, 1e3*pi))",
+     "x^2 + y^2 + cos(x - y)"},
     {"x = 0.3, 1", "cos(x - 2*pi*mod(t, 1)) + x^2/2*(-1)^(2*floor(t))",
      "cos(x - 2*pi*t) + x^2/2"},
 };

@@ -327,6 +327,24 @@ shows 'x (m), p_x (J s/m)'
 test "$(points 3) $(points 4)" = "31 31" || fails "draws other rows"
 awk '/series[34] using/ { n += / with points linetype [12] / } END { exit n != 2 }' \
     $work/out.gp || fails "does not draw points"
+# What has no curve, ended early, or is outside, is told; the energy from its start.
+tells() {
+    text=$1
+    shift
+    "$nevh" "$@" --plot $svg >$work/out 2>$work/err
+    command=$*
+    texts | grep -Fq -e "$text" || { fails "does not tell '$text'"; texts; }
+}
+tells 'failed: tao4, dt = 0.02' compare double-pendulum-chaotic --dt 0.02 --t-end 5 \
+    --integrators tao4,gauss4
+tells 'verlet ended at t = 3.8' run henon-heiles --start p_x=2 --plot-kind time
+tells 'outside: verlet, Halley' run earth-halley --plot-kind configuration
+tells 'energy change' run fput --plot-kind time
+tells 'sum of areas' flow henon-heiles --t-end 10 --integrators verlet
+# Curves of one colour differ by their dashes.
+draws run kepler --integrators rk4,pefrl --dt 0.1 --t-end 6 --plot-kind time --plot $svg
+test "$(grep -c 'stroke-dasharray' $svg)" -ge 5 || fails "draws rk4 and pefrl alike"
+
 # A run of 375 swings is cut, and says so; unless its end is asked for.
 draws run pendulum --plot-kind time --plot $svg
 shows 'verlet, dt = 0.1 s; gradient central4; t = 0 ... 20 s; a part of the run: --t-end 1000 shows all'

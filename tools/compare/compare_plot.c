@@ -39,7 +39,7 @@ static void draw_row(plot *to, const plan *p, const row *r) {
     free(name);
 }
 
-/* Adds the rows that failed, which have no curve. */
+/* Adds to the words the rows that failed, which have no curve. */
 static void note_failed(const plan *p, const row rows[], size_t count,
                         char **words) {
     bool any = false;

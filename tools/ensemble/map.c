@@ -36,12 +36,15 @@ static bool names_picture(const char *file) {
 }
 
 static int check_options(const options *o, const nevh_sweep *s) {
-    size_t varied = nevh_sweep_varied(s);
+    size_t varied = nevh_sweep_varied(s), number = varied;
+    while (number + 1 < nevh_sweep_columns(s) &&
+           nevh_sweep_is_verdict(s, number))
+        number++;
     if (nevh_sweep_columns(s) != varied + 1)
         return tool_refuse("--picture draws one outcome, and here are %zu: say "
                            "which, as --outcomes '%s'",
                            nevh_sweep_columns(s) - varied,
-                           nevh_sweep_column(s, varied));
+                           nevh_sweep_column(s, number));
     if (nevh_sweep_is_verdict(s, varied))
         return tool_refuse("--picture draws numbers, and a verdict is none");
     if (nevh_sweep_members(s) > MOST_MEMBERS)

@@ -259,7 +259,7 @@ static void chaos_words(const plan *p, list *words) {
     free(found.failure);
 }
 
-/* Tells what the step alone does to the orbit. */
+/* Tells what the step alone does to the orbit, where both runs end at one time. */
 static void step_words(plan *p, const char *integrator, list *words) {
     enum { FEW = 2 };
     static const double nothing = 1e-6;
@@ -268,13 +268,15 @@ static void step_words(plan *p, const char *integrator, list *words) {
     p->dt = &shorter;
     trace half = trace_sampled(p, integrator, FEW);
     p->dt = dt;
+    if (fabs(whole.t - half.t) <= nothing * shorter)
+        half.t = whole.t;
     difference d = trace_difference(&whole, &half);
     if (!whole.status && !half.status && d.at_end > nothing)
-        list_print(
-            words,
-            "%s at dt = %g: half the step changes the state at the end "
-            "by %.1e.  A difference that is no larger may be the step's.",
-            integrator, dt[0], d.at_end);
+        list_print(words,
+                   "%s at dt = %g: half the step changes the state at the end "
+                   "by %.1e.  A difference that is no larger may be the "
+                   "step's.",
+                   integrator, dt[0], d.at_end);
     trace_free(&whole);
     trace_free(&half);
 }

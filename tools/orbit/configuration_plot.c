@@ -259,7 +259,7 @@ static void set_window(plot *to, const run_picture *picture, const bob_list *b,
     plot_span_y(to, window[1].low, window[1].high);
 }
 
-/* Adds what discs of an orbit are outside the window. */
+/* Adds to the words the discs of an orbit that are outside the window. */
 static void note_outside(const bob_list *b, const run_picture *picture,
                          const orbit *o, const picture_range window[2],
                          char **words) {
@@ -270,9 +270,9 @@ static void note_outside(const bob_list *b, const run_picture *picture,
             at[1] >= window[1].low && at[1] <= window[1].high)
             continue;
         char *name = bob_name(b, bob);
-        text_extend(words, "; outside: %s%s%s",
-                    picture->orbits.count > 1 ? o->name : "",
-                    picture->orbits.count > 1 ? ", " : "",
+        text_extend(words, "%s%s, %s", **words ? "; " : "; outside: ",
+                    picture->orbits.count > 1 || !o->integrator ? o->name
+                                                                : o->integrator,
                     name ? name : "the body");
         free(name);
     }

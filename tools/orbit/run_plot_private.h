@@ -51,7 +51,7 @@ char *picture_cut(run_picture *, double turns, double wanted);
 /* Title, and the note with what is said of orbits, and more; a plot is made
    with the labels. */
 void picture_note(const run_picture *, plot *, const char *more);
-/* The number of these that stand side by side. */
+/* The number of panels side by side. */
 size_t picture_across(const run_picture *);
 /* Which orbits ended early, and when, or ""; to be freed. */
 char *picture_early(const run_picture *);

@@ -72,21 +72,6 @@ static char *follow_and_cut(run_picture *picture, column_panels *c) {
     return words ? words : text_print("%s", "");
 }
 
-/* The value from which a column is drawn: the energy at the start, where its changes
-   are too small beside it for the numbers of an axis; else 0. */
-static double base_of(const run_picture *picture, const column_panels *c,
-                      size_t k) {
-    static const double small = 1e-4;
-    const orbits *all = &picture->orbits;
-    if (c->columns.item[k].kind != COLUMN_ENERGY || !all->item->rows.count)
-        return 0;
-    double start = orbit_row(all->item, 0)[k], most = 0;
-    for (size_t i = 0; i < all->count; i++)
-        for (size_t j = 0; j < all->item[i].rows.count; j++)
-            most = fmax(most, fabs(orbit_row(&all->item[i], j)[k] - start));
-    return most < small * fabs(start) ? start : 0;
-}
-
 static void draw_reference(plot *to, const orbit *o, size_t k, double base) {
     size_t series = plot_series(to, o->name);
     plot_style(to, series, PLOT_BEHIND);
@@ -104,6 +89,26 @@ static size_t place_in_panel(const column_panels *c, size_t k, size_t *count) {
             ++*count;
         }
     return place;
+}
+
+/* The value from which a column is drawn: the energy at the start, where its changes
+   are too small beside it for the numbers of an axis and it has a panel of its own;
+   else 0. */
+static double base_of(const run_picture *picture, const column_panels *c,
+                      size_t k) {
+    static const double small = 1e-4;
+    const orbits *all = &picture->orbits;
+    size_t beside;
+    place_in_panel(c, k, &beside);
+    if (c->columns.item[k].kind != COLUMN_ENERGY || beside > 1 ||
+        !all->item->rows.count || picture->data.points)
+        return 0;
+    double start = orbit_row(all->item, 0)[k], most = 0;
+    for (size_t i = 0; i < all->count; i++)
+        for (size_t j = 0; j < all->item[i].rows.count; j++)
+            most = fmax(most, fabs(orbit_row(&all->item[i], j)[k] - start));
+    bool begins = orbit_row(all->item, 0)[-1] == picture->plan.run->t_start;
+    return begins && most > 0 && most < small * fabs(start) ? start : 0;
 }
 
 /* Several orbits differ by colour, and the columns of a panel by dashes; those
