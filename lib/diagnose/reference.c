@@ -180,9 +180,8 @@ static void forget_ranges(nevh_reference *r) {
 
 /* Series in place of an exact solution whose constants, or phase, have too few
    digits; the solution where series are no better, or cost too much.  Series may end
-   earlier where the solution has less than six digits.  *kept is
-   false where it does not keep H: it is that of other places than the orbit's, as
-   on one side of a wall. */
+   earlier where the solution has less than six digits.  *kept is false where it does
+   not keep H: it is that of other places than the orbit's, as on one side of a wall. */
 static int use_exact_or_series(nevh_reference *r, bool *kept) {
     static const double poor = 1e-6;
     int status = use_exact(r, kept);

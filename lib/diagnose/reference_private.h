@@ -60,7 +60,7 @@ typedef struct {
 
 /* The test that a run keeps H, if it should, or passes no jump. */
 typedef struct {
-    nevh_field *field; /* for values; NULL: it is not */
+    nevh_field *field; /* for values */
     bool constant;     /* H is */
     size_t n;
     double t; /* of the step */

@@ -53,8 +53,6 @@ static long double reference_watch_value(nevh__watch *w, const double z[],
 void nevh__watch_begin(nevh__watch *w) {
     w->changed = w->apart = w->size = 0;
     w->jump = (nevh__jump){0};
-    if (!w->field)
-        return;
     memcpy(w->before, w->start, 2 * w->n * sizeof *w->before);
     w->h0 = reference_watch_value(w, w->start, &w->size);
 }
@@ -180,8 +178,6 @@ static double find_rounding(nevh__watch *w, const double z[]) {
 bool nevh__watch_step(nevh__watch *w, const double coarse[],
                       const double fine[]) {
     double size = 0;
-    if (!w->field)
-        return true;
     if (!w->constant) {
         reference_watch_value(w, fine, &size);
         w->size = fmax(w->size, size);

@@ -188,7 +188,7 @@ static bool loses(const states *s, int i) {
     if (x->kind == NEVH__GRAPH_CALL && x->function == NEVH__ATAN)
         return lost || a > 1 / least;
     bool vanishes = x->kind != NEVH__GRAPH_CALL || x->function == NEVH__EXP;
-    return lost || (vanishes && y == 0 && a > 0 && b > 0);
+    return lost || (vanishes && x->a >= 0 && y == 0 && a > 0 && b > 0);
 }
 
 /* True if a change is so small that functions of it may hide theirs. */
