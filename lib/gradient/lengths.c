@@ -12,6 +12,8 @@ static const double not_quadratic = 0.2;
 /* Relative to the kinetic energy, or to other terms that vary: a smaller change
    comes from a distant or weak force, and has no information on the momenta. */
 static const double out_of_reach = 0x1p-26;
+/* The energy of a start beside that of its orbit. */
+static const double far_less = 0x1p-10;
 enum { FARTHEST = 400, LEAP = 8 }; /* powers of two from the first guess */
 enum { FEWEST_AHEAD = 2, MOST_AHEAD = 30 }; /* distances at once */
 /* Doublings over which H is a power of the distance, or constant: it is so beyond. */
@@ -339,7 +341,7 @@ static void find_energy(nevh__step_selection *e, const nevh__planned *term,
     *energy = fmax(*energy, isfinite(whole) ? whole : 0);
 }
 
-/* Nothing has a size: variations over those that the orbit has later, or over
+/* Variations over the sizes that the orbit has later, or where nothing has one over
    coordinates of 1, with which momenta at least go together. */
 static void find_from_rest(nevh__step_selection *e, const nevh__planned *term,
                            size_t instance, size_t k, size_t i,
@@ -349,11 +351,30 @@ static void find_from_rest(nevh__step_selection *e, const nevh__planned *term,
     *energy = fmax(*energy, isfinite(whole) ? whole : 0);
 }
 
-/* Returns the sizes, to be freed; NULL where there are none. */
-static double *look_from_rest(nevh__step_selection *e, double *energy) {
-    double *sizes = nevh__array(2 * e->field->n, sizeof *sizes);
-    e->sizes = sizes && nevh__sizes_from_rest(e, sizes) ? sizes : NULL;
-    visit_all(e, find_from_rest, energy);
+/* True where H is quadratic in each variable at the end of the orbit, too. */
+static bool is_straight_later(nevh__step_selection *e) {
+    double energy = 0;
+    e->at = e->samples.most;
+    e->samples.t[e->at] = e->samples.t[0];
+    visit_all(e, find_curved, &energy);
+    e->at = 0;
+    memset(e->length, 0, 2 * e->field->n * sizeof *e->length);
+    return energy == 0;
+}
+
+/* The sizes of the orbit from the start, where these are far beyond those that the
+   start has: then H varies there by much more.  Returns them, to be freed. */
+static double *look_along_orbit(nevh__step_selection *e, double *energy) {
+    double *sizes = nevh__array(2 * e->field->n, sizeof *sizes), along = 0;
+    bool any = *energy == 0;
+    bool found = sizes && nevh__sizes_from_start(e, any, sizes);
+    e->sizes = found ? sizes : NULL;
+    if (found || any)
+        visit_all(e, find_from_rest, &along);
+    if (any || (*energy < far_less * along && is_straight_later(e)))
+        *energy = along;
+    else
+        e->sizes = NULL;
     return sizes;
 }
 
@@ -419,46 +440,6 @@ static void find_over_lanes(nevh__step_selection *e, double *energy) {
     e->at = 0;
 }
 
-/* Adds the changes of H by one instance, up and down by the length of each
-   variable. */
-static void add_changes(const nevh__step_selection *e,
-                        const nevh__planned *term, size_t instance,
-                        double changes[]) {
-    double up = 0, down = 0;
-    for (size_t k = 0; k < term->nv; k++) {
-        size_t i = nevh__index(term, instance, k);
-        i = k < term->nq ? i : e->field->n + i;
-        if (nevh__probed(term, k) == k) {
-            const double move[3] = {0, e->length[i], -e->length[i]};
-            double x[3], h[3];
-            nevh__sample_line(&(nevh__axis){e, term, instance, k}, e->at, 3,
-                              move, x, h);
-            up = h[1] - h[0];
-            down = h[2] - h[0];
-        }
-        changes[2 * i] += up;
-        changes[2 * i + 1] += down;
-    }
-}
-
-void nevh__find_curvatures(nevh__step_selection *e, double changes[],
-                           double curvature[]) {
-    const nevh_field *f = e->field;
-    for (e->at = 0; e->at < e->samples.count; e->at++) {
-        memset(changes, 0, 4 * f->n * sizeof *changes);
-        for (size_t j = 0; j < f->n_terms; j++)
-            for (size_t i = 0; i < f->terms[j].term->decl.count; i++)
-                add_changes(e, &f->terms[j], i, changes);
-        for (size_t i = 0; i < 2 * f->n; i++) {
-            double most = fmax(fabs(changes[2 * i]), fabs(changes[2 * i + 1]));
-            double curved = most / (e->length[i] * e->length[i]);
-            if (isfinite(curved))
-                curvature[i] = fmax(curvature[i], curved);
-        }
-    }
-    e->at = 0;
-}
-
 bool nevh__keep_lengths(const nevh__step_selection *e) {
     nevh_field *f = e->field;
     if (e->options->width > 1)
@@ -468,7 +449,7 @@ bool nevh__keep_lengths(const nevh__step_selection *e) {
 }
 
 void nevh__find_lengths(nevh__step_selection *e) {
-    double energy = 0, other = 0, last = 1;
+    double energy = 0, other = 0, last = 1, *sizes = NULL;
     if (e->field->length) {
         lengths_load(e, 0, 0);
         e->lanes = e->samples.count = 1;
@@ -476,15 +457,15 @@ void nevh__find_lengths(nevh__step_selection *e) {
         return;
     }
     find_over_lanes(e, &energy);
-    if (energy == 0)
+    if (energy == 0) {
         visit_all(e, find_energy, &energy);
-    else {
+        sizes = look_along_orbit(e, &energy);
+    } else {
         visit_all(e, find_kinetic, &other);
         visit_all(e, find_within, &other);
     }
     if (energy < out_of_reach * other)
         energy = other;
-    double *sizes = energy == 0 ? look_from_rest(e, &energy) : NULL;
     visit_all(e, find_straight, &energy); /* kept apart by their sign */
     e->sizes = NULL;
     free(sizes);

@@ -1,5 +1,5 @@
 /* nevh: how far does an orbit go, of which nothing is known, such as one that
-   starts at rest at 0?
+   starts at rest at 0, or nearly so in a strong field?
 
    There no variable has a size, and where H is quadratic nothing has a length.
    So the terms' own gradients are followed from a step that is far too short
@@ -19,6 +19,9 @@ enum { MOST_STEPS = 1600, ENOUGH = 100 }; /* all; those that are short */
 static const double short_step = 0x1p-4;  /* beside the time */
 static const double tolerance = 1e-3, growth = 8, shortest = 0x1p-400;
 static const double most_work = 4e6; /* instances times steps */
+/* Growth of sizes in the second half of short steps: orbits that escape as exp(t)
+   grow by more. */
+static const double most_growth = 8;
 static const double overflowing = 0x1p500, underflowing = 0x1p-900;
 
 /* Adds (dH/dp, -dH/dq) of one block of instances, lane by lane. */
@@ -177,8 +180,34 @@ bool nevh__follow_orbit(nevh_field *f, double t, const double q[],
     return found;
 }
 
-bool nevh__sizes_from_rest(const nevh__step_selection *e, double sizes[]) {
+/* Sizes when half of the short steps have been taken; the last state. */
+typedef struct {
+    const double *sizes;
+    double *half, *q, *p;
+    size_t n;
+    int steps;
+} halfway;
+
+static void rest_remember(void *context, double t, double h, const double y[]) {
+    halfway *w = context;
+    (void)t, (void)h;
+    if (++w->steps == ENOUGH / 2)
+        memcpy(w->half, w->sizes, 2 * w->n * sizeof *y);
+    memcpy(w->q, y, w->n * sizeof *y);
+    memcpy(w->p, y + w->n, w->n * sizeof *y);
+}
+
+bool nevh__sizes_from_start(const nevh__step_selection *e, bool escapes,
+                            double sizes[]) {
     const nevh__samples *s = &e->samples;
-    return has_gradients(e->field) &&
-           nevh__follow_orbit(e->field, s->t[0], s->q, s->p, sizes, NULL, NULL);
+    size_t n = e->field->n;
+    double *half = nevh__array(2 * n, sizeof *half);
+    halfway w = {sizes, half, s->q + s->most * n, s->p + s->most * n, n, 0};
+    bool found = half && has_gradients(e->field) &&
+                 nevh__follow_orbit(e->field, s->t[0], s->q, s->p, sizes,
+                                    rest_remember, &w);
+    for (size_t i = 0; found && i < 2 * n; i++)
+        found = escapes || sizes[i] <= most_growth * half[i];
+    free(half);
+    return found;
 }

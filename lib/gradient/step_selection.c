@@ -3,6 +3,7 @@
 #include "gradient/step_selection_private.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { LARGE = 65536 };
 enum { FEWEST_SAMPLES = 4 }; /* of the pilot, for scales */
@@ -60,6 +61,46 @@ static void set_scales(nevh__step_selection *e) {
         double most = step_selection_largest(e, i, e->lanes + count);
         f->scale[i] = most > 0 ? fmin(most, e->length[i]) : e->length[i];
     }
+}
+
+/* Adds the changes of H by one instance, up and down by the length of each
+   variable. */
+static void add_changes(const nevh__step_selection *e,
+                        const nevh__planned *term, size_t instance,
+                        double changes[]) {
+    double up = 0, down = 0;
+    for (size_t k = 0; k < term->nv; k++) {
+        size_t i = nevh__index(term, instance, k);
+        i = k < term->nq ? i : e->field->n + i;
+        if (nevh__probed(term, k) == k) {
+            const double move[3] = {0, e->length[i], -e->length[i]};
+            double x[3], h[3];
+            nevh__sample_line(&(nevh__axis){e, term, instance, k}, e->at, 3,
+                              move, x, h);
+            up = h[1] - h[0];
+            down = h[2] - h[0];
+        }
+        changes[2 * i] += up;
+        changes[2 * i + 1] += down;
+    }
+}
+
+void nevh__find_curvatures(nevh__step_selection *e, double changes[],
+                           double curvature[]) {
+    const nevh_field *f = e->field;
+    for (e->at = 0; e->at < e->samples.count; e->at++) {
+        memset(changes, 0, 4 * f->n * sizeof *changes);
+        for (size_t j = 0; j < f->n_terms; j++)
+            for (size_t i = 0; i < f->terms[j].term->decl.count; i++)
+                add_changes(e, &f->terms[j], i, changes);
+        for (size_t i = 0; i < 2 * f->n; i++) {
+            double most = fmax(fabs(changes[2 * i]), fabs(changes[2 * i + 1]));
+            double curved = most / (e->length[i] * e->length[i]);
+            if (isfinite(curved))
+                curvature[i] = fmax(curvature[i], curved);
+        }
+    }
+    e->at = 0;
 }
 
 int nevh__step_selection_init(nevh__step_selection *e, nevh_field *f,

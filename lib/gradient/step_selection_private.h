@@ -30,7 +30,8 @@ enum { NEVH__MOST_SAMPLES = 32 };
 typedef struct {
     size_t count, most;
     double t[NEVH__MOST_SAMPLES + 1];
-    double *q, *p; /* (most + 1) x n: the last one is nevh__verify's */
+    double *q, *p; /* (most + 1) x n: the last one is nevh__verify's
+                      and nevh__sizes_from_start's */
 } nevh__samples;
 
 /* The state of planning. */
@@ -82,8 +83,10 @@ double nevh__curve_length(const nevh__axis *, double guess);
    samples that matter. */
 void nevh__find_lengths(nevh__step_selection *);
 /* The largest size that each variable reaches, 2n, on the orbit from the first
-   sample, where it starts at rest at 0; false where that is not to be found. */
-bool nevh__sizes_from_rest(const nevh__step_selection *, double sizes[]);
+   sample; false where that is not to be found, or unless `escapes` where the orbit
+   leaves as exp(t).  Where it ends is then the state after the last sample. */
+bool nevh__sizes_from_start(const nevh__step_selection *, bool escapes,
+                            double sizes[]);
 /* From now on they are those of the field, of one orbit; false when memory is
    out. */
 bool nevh__keep_lengths(const nevh__step_selection *);

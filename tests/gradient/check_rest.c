@@ -29,6 +29,11 @@ static const struct {
      "sum(i = 1..6, p_x[i]^2)/(2*m) + sum(i = 1..5, (x[i+1] - x[i])^2)*k/2 - "
      "f*x[1]*cos(w*t)",
      6, true},
+    /* nearly at rest, in a strong field */
+    {"x = 0\ny = 1e-5*f/(m*w^2)",
+     "((p_x + m*w*y/2)^2 + (p_y - m*w*x/2)^2)/(2*m) - f*x", 2, false},
+    {"x = 1e-7*f/k\ny = 0", "(p_x^2 + p_y^2)/(2*m) + k*(x^2 + x*y + y^2) - f*y",
+     2, true},
 };
 enum { CASES = sizeof cases / sizeof *cases, MOST = 6 };
 
