@@ -24,6 +24,10 @@ NEVH_API int nevh_scene_set_outcomes(nevh_scene *, const char *outcomes);
 
 /* The number of members of the scene's [ensemble]; 0: nothing is varied. */
 NEVH_API uint64_t nevh_scene_members(const nevh_scene *);
+/* True if [ensemble] gives `name`, "x", "p_x", "v_x" or "g", to each member, so that
+   what the scene or nevh_scene_set_start says of it has no effect on members.
+   cost     a look through a list */
+NEVH_API bool nevh_scene_varies(const nevh_scene *, const char *name);
 /* The initial state of a member; n each.
    returns  NEVH_OK; NEVH_EINVAL where there is none of that number, or where
             parameters that are varied change more than the start; NEVH_EMAXITER

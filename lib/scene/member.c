@@ -3,11 +3,29 @@
 #include "scene/sweep_private.h"
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 uint64_t nevh_scene_members(const nevh_scene *s) {
     return s && s->model && s->model->ensemble->n_varied
                ? s->model->ensemble->members
                : 0;
+}
+
+/* A velocity decides on the momentum, too. */
+static bool is_same_start(const char *a, const char *b) {
+    bool both = strchr("pv", a[0]) && strchr("pv", b[0]) && a[0] && b[0] &&
+                a[1] == '_' && b[1] == '_';
+    return strcmp(both ? a + 2 : a, both ? b + 2 : b) == 0;
+}
+
+bool nevh_scene_varies(const nevh_scene *s, const char *name) {
+    if (!s || !s->model || !name)
+        return false;
+    const nevh__scene_ensemble *e = s->model->ensemble;
+    for (size_t i = 0; i < e->n_varied; i++)
+        if (is_same_start(e->varied[i].name, name))
+            return true;
+    return false;
 }
 
 static int member_refuse(nevh_scene *s, int status, const char *why) {

@@ -89,6 +89,7 @@ static nevh_separability separability;
     X(TEXT, nevh_rates_message, (NULL))                                        \
     X(STATUS, nevh_rates_at, (NULL, 0.1, in, in, out, out))                    \
     X(NUMBER, nevh_scene_members, (NULL))                                      \
+    X(NUMBER, nevh_scene_varies, (NULL, "x"))                                  \
     X(STATUS, nevh_scene_member_start, (NULL, 0, out, out))                    \
     X(STATUS, nevh_frequencies, (0.1, 64, NULL, 1, NULL, NULL))                \
     X(ANY, nevh_spectral_samples_free, (NULL))                                 \

@@ -241,4 +241,8 @@ END
 exits 0 cost $work/edge.nevh --integrators verlet,euler
 exits 1 cost $work/edge.nevh --integrators verlet,gauss4
 says 'gauss4 .* failed: '
+# Two counts that are not those of gradients.
+exits 0 cost coupled-oscillators --integrators respa,verlet,taylor --budget 0.2
+has '^taylor: a series counts as one evaluation'
+has '^respa: exact steps of parts are not counted as evaluations'
 exit $status

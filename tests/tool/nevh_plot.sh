@@ -623,4 +623,20 @@ for label in 'displ[a-z_]*\.\.\. (10⁻⁹ furl' 'displacement[a-z_]*\.\.\. (10�
         { fails "has no label $label"; grep '^set ylabel' $work/out.gp; }
 done
 
+# The reference has its peaks, however narrow they are: p_y = sqrt(1.99/0.01) at the
+# pericentre.  The third series is p_y of the reference.
+draws run kepler --set e=0.99 --integrators gauss8 --dt 0.001 --t-end 13 \
+    --plot-kind time --columns x,p_y --plot $svg --keep-plot-script $work/out.gp
+awk '/^\$series/ { n++; most = 0 } /^EOD/ { if (n == 3) peak = most }
+    NF == 2 && $1 > 1 && $2 > most { most = $2 }
+    END { exit !(peak > 14.1) }' $work/out.gp || fails "cuts the peaks of the reference"
+
+# An energy that changes with the time or friction is labelled so; momenta have units.
+draws run damped-driven-pendulum --plot-kind time --plot $svg --t-end 20
+shows 'energy, not conserved'
+draws run pendulum --plot-kind time --plot $svg --t-end 20
+shows 'energy (J)'
+draws run sun-earth-moon --plot-kind time --columns p_x[1] --plot $svg --t-end 1
+texts | grep -q '^p_x\[1\] (.*solar mass AU/year)$' || fails "has no unit of p_x[1]"
+
 exit $status

@@ -119,7 +119,7 @@ command -v gnuplot >/dev/null 2>&1 || { echo "no gnuplot draws a .gif"; exit $((
 exits 0 run kepler --integrators verlet,rk4 --dt 0.15 --t-end 30 \
     --plot-kind animation --plot $work/out.gif --keep-plot-script $work/out.gp
 test "$(head -c 6 $work/out.gif)" = GIF89a || fails "draws no GIF"
-test "$(grep -c '^unset multiplot' $work/out.gp)" = 101 ||
+test "$(grep -c '^unset multiplot' $work/out.gp)" = 85 ||
     fails "has $(grep -c '^unset multiplot' $work/out.gp) frames"
 for t in 0.0 15.0 30.0; do
     grep -q "t = $t" $work/out.gp || fails "has no frame of t = $t"
@@ -130,7 +130,7 @@ awk '/^\$series/ { n = $1 } /^EOD/ { n = "" }
     n == "$series3" && NF == 2 { a = $1; b = $2 }
     n == "$series7" && NF == 2 { frame++; d = sqrt((a - $1)^2 + (b - $2)^2)
         if (frame == 1) first = d }
-    END { exit !(frame == 101 && first == 0 && d > 0.3) }' $work/out.gp ||
+    END { exit !(frame == 85 && first == 0 && d > 0.3) }' $work/out.gp ||
     fails "draws other orbits"
 # Of many turns a few; a run that fails stands still, and is said to.
 exits 0 run kepler --plot-kind animation --plot $work/out.gif --quiet

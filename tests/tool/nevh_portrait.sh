@@ -152,4 +152,8 @@ exits 0 portrait damped-driven-pendulum --integrators verlet --plot $work/d.svg 
     --keep-plot-script $work/gp
 grep -q '^set title "verlet; lines: H at t = 0, without friction"' $work/gp ||
     fails "tells a change of H"
+# What is given to all orbits is in the title as it is.
+exits 0 portrait henon-heiles --vary p_x=0.3 --integrators verlet --t-end 20 \
+    --plot $work/c.svg --keep-plot-script $work/gp
+grep -q 'side by side, but p_x=0.3' $work/gp || fails "says that p_x is varied"
 exit $status

@@ -206,4 +206,13 @@ has '^# energies: H = 0.* of the 4 orbits: .*solve'
 exits 0 section $work/surface.nevh --vary 'y = range(-0.2, 0.3, 4)' \
     --vary 'p_x = solve(H = 1/12, from 0.3)'
 lacks 'energies:'
+
+# A start that the ensemble replaces is refused; that of another variable is not.
+exits 2 section henon-heiles --start p_x=0.3
+says "--start p_x=0.3: \[ensemble\] or --vary gives it to each orbit; --vary 'p_x=0.3'"
+exits 2 section henon-heiles --start v_y=0.3
+exits 2 sweep henon-heiles --vary 'y = range(0.1, 0.2, 2)' --start y=3
+exits 2 sweep pendulum --vary 'g = 9, 10' --set g=3
+exits 0 section henon-heiles --start x=0 --t-end 20
+exits 0 run henon-heiles --start p_x=0.3 --t-end 1
 exit $status

@@ -37,6 +37,23 @@ static void measure_energies(members *m, const plan *p) {
     nevh_field_free(f);
 }
 
+int members_check(const plan *p, const options *o) {
+    for (size_t i = 0; i < o->settings.count; i++) {
+        const char *setting = o->settings.item[i];
+        const char *text = setting + 1 + strspn(setting + 1, " ");
+        if (!strchr("@=", *setting))
+            continue;
+        char *name = text_print("%.*s", (int)strcspn(text, " ="), text);
+        bool varies = nevh_scene_varies(p->scene, name);
+        free(name);
+        if (varies)
+            return tool_refuse("--%s %s: [ensemble] or --vary gives it to each "
+                               "orbit; --vary '%s' gives all the same",
+                               *setting == '@' ? "start" : "set", text, text);
+    }
+    return TOOL_OK;
+}
+
 int members_read(members *m, const plan *p) {
     uint64_t count = nevh_scene_members(p->scene);
     *m = (members){.n = p->n, .several = count > 0, .low = NAN, .high = NAN};

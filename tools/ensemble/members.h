@@ -14,6 +14,8 @@ typedef struct {
     char *why;        /* the first has none; or NULL */
     double low, high; /* of their energies at the start; NAN: not known */
 } members;
+/* Refuses --set and --start of what [ensemble] or --vary gives to each member. */
+int members_check(const plan *, const options *);
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int members_read(members *, const plan *);
 void members_free(members *);

@@ -1,6 +1,7 @@
 /* nevh sweep: a row for each member of an ensemble.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
+#include "members.h"
 #include "sweep_private.h"
 #include <inttypes.h>
 #include <math.h>
@@ -108,16 +109,16 @@ static const char *status_word(nevh_member_status status) {
 
 static void show_progress(sweep_job *j) {
     double now = seconds();
-    uint64_t members = j->count;
+    uint64_t all = j->count;
     if (j->options->quiet || !isatty(STDERR_FILENO) || now < j->shown + 1)
         return;
     j->shown = now;
     double rate = (double)j->told / (now - j->begun);
     fprintf(stderr,
             "\r\033[K%llu of %llu members, %llu not done, %.3g/s, %.0f s left",
-            (unsigned long long)j->told, (unsigned long long)members,
+            (unsigned long long)j->told, (unsigned long long)all,
             (unsigned long long)(j->failed + j->startless), rate,
-            (double)(members - j->told) / rate);
+            (double)(all - j->told) / rate);
 }
 
 void sweep_check_values(sweep_job *j, const double values[]) {
@@ -288,6 +289,8 @@ static int sweep(const options *o) {
     status = ranks_begin(&j.ranks, o, is_array(o));
     if (!status) {
         status = plan_make(&j.plan, o);
+        if (!status)
+            status = members_check(&j.plan, o);
         if (!status)
             status = make_sweep(&j);
         status = ranks_agree(&j.ranks, status);

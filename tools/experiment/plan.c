@@ -232,10 +232,15 @@ char *plan_title(const nevh_scene *scene, const char *name, const options *o) {
         text_extend(&title, "%s%s", changes++ ? ", " : ", but ", change);
         free(change);
     }
-    for (size_t i = 0; i < o->vary.count; i++)
-        if (strchr(o->vary.item[i], '='))
+    for (size_t i = 0; i < o->vary.count; i++) {
+        const char *text = o->vary.item[i];
+        bool one = text[strcspn(text, ",(:")] == '\0';
+        if (strchr(text, '=') && one)
+            text_extend(&title, "%s%s", changes++ ? ", " : ", but ", text);
+        else if (strchr(text, '='))
             text_extend(&title, "%s%.*s varied", changes++ ? ", " : ", but ",
-                        (int)strcspn(o->vary.item[i], " =["), o->vary.item[i]);
+                        (int)strcspn(text, " =["), text);
+    }
     return title;
 }
 

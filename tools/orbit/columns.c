@@ -153,6 +153,8 @@ void columns_values(quantities *c, double t, const double q[], const double p[],
 }
 
 char *column_label(const plan *p, const quantity *c) {
+    if (c->kind == COLUMN_ENERGY && p->balance)
+        return plot_label(p, "energy, not conserved", c->name);
     return c->kind == COLUMN_ENERGY_ERROR ? text_print("energy error, relative")
            : c->kind == COLUMN_SHADOW_ERROR ? text_print("error of shadow H")
                                             : plot_label(p, c->name, c->name);

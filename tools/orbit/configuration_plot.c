@@ -316,7 +316,7 @@ plot *plot_configuration(run_picture *picture) {
 
 /* Animations. */
 
-enum { FRAMES = 100, EACH = 10, TRAIL = 25 * EACH, MOST_PANELS = 4 };
+enum { FRAMES = 84, EACH = 10, TRAIL = 25 * EACH, MOST_PANELS = 4 };
 
 /* Writes four values of each part. */
 static void fill_parts(void *data, double t, const double q[], const double p[],

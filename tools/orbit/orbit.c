@@ -110,12 +110,30 @@ int orbit_follow(orbit *o, const row_times *times, size_t columns,
     return o->status;
 }
 
+/* The largest change of a variable of `count` from its last value, over its range so
+   far, which it widens. */
+static double relative_change(size_t count, const double y[], double last[],
+                              double low[], double high[]) {
+    double most = 0;
+    for (size_t k = 0; k < count; k++) {
+        low[k] = fmin(low[k], y[k]);
+        high[k] = fmax(high[k], y[k]);
+        if (high[k] > low[k])
+            most = fmax(most, fabs(y[k] - last[k]) / (high[k] - low[k]));
+        last[k] = y[k];
+    }
+    return most;
+}
+
+/* Times are the closer the faster a variable changes. */
 size_t orbit_follow_reference(orbit *o, nevh_reference *r, size_t columns,
                               orbit_fill *fill, void *data) {
-    enum { STATES = 8000 };
-    size_t n = o->plan.n;
+    enum { MOST = THINNED_ROWS - 1, FEWEST = 4000 };
+    static const double change = 0.01, most_growth = 1.5, least = 0.1;
+    size_t n = o->plan.n, count = 2 * n;
     filler f = {o, fill, data};
-    double *q = tool_allocate(2 * n, sizeof *q), *p = q + n;
+    double *y = tool_allocate(4 * count, sizeof *y), *last = y + count;
+    double *low = last + count, *high = low + count;
     double begin = o->plan.run->t_start;
     double span = o->plan.t_end - begin,
            until = nevh_reference_horizon(r) - begin;
@@ -124,13 +142,22 @@ size_t orbit_follow_reference(orbit *o, nevh_reference *r, size_t columns,
     o->rows = thinned_new(columns + 1);
     o->q = tool_allocate(n, sizeof *o->q);
     o->p = tool_allocate(n, sizeof *o->p);
-    for (size_t i = 0; i <= STATES; i++) {
-        double elapsed = span * (double)i / STATES;
-        if (tool_status(nevh_reference_state_after(r, elapsed, q, p)))
+    for (double part = 0, step = 1. / FEWEST;;) {
+        if (tool_status(nevh_reference_state_after(r, part * span, y, y + n)))
             break;
-        take(&f, begin + elapsed, q, p);
+        if (part == 0)
+            for (size_t k = 0; k < count; k++)
+                low[k] = high[k] = last[k] = y[k];
+        take(&f, begin + part * span, y, y + n);
+        if (part == 1 || o->rows.count == MOST)
+            break;
+        double moved = relative_change(count, y, last, low, high);
+        step *= fmax(least, fmin(most_growth, change / moved));
+        step = fmin(step, 1. / FEWEST);
+        step = fmax(step, (1 - part) / (double)(MOST - o->rows.count));
+        part = fmin(part + step, 1);
     }
-    free(q);
+    free(y);
     return o->rows.count;
 }
 

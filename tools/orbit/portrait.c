@@ -407,6 +407,8 @@ static int portrait(const options *o) {
                            "--plot - for the terminal");
     int status = plan_make(&j.plan, o);
     if (!status)
+        status = members_check(&j.plan, o);
+    if (!status)
         status = members_read(&j.members, &j.plan);
     if (!status)
         status = read_data(&j, o);

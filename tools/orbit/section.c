@@ -463,6 +463,8 @@ static int section(const options *o) {
     options as = with_format(o);
     int status = plan_make(&p, o);
     if (!status)
+        status = members_check(&p, o);
+    if (!status)
         status = choose(&j, &p, o);
     if (!status)
         status = members_read(&j.members, &p);

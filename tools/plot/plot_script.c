@@ -25,7 +25,7 @@ static void print_terminal(FILE *f, const target *t, const layout *l) {
         break;
     case PLOT_GIF: /* so many hundredths of a second each frame */
         fprintf(f,
-                "set terminal gif animate optimize delay 6 loop 0 size %g,%g "
+                "set terminal gif animate optimize delay 7 loop 0 size %g,%g "
                 "enhanced "
                 "font 'sans,%d' fontscale 0.6 background '#ffffff'\n",
                 floor(0.7 * w), floor(0.7 * h), PLOT_FONT);

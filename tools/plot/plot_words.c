@@ -10,14 +10,30 @@ static bool is_plain(const char *unit) {
     return *unit && !strpbrk(unit, " /*^()");
 }
 
+/* "M L/T" of an energy "M L^2/T^2"; NULL where it is not of that form. */
+static char *unit_of_parts(const char *energy, const char *length,
+                           const char *time) {
+    char *ends = text_print("%s^2/%s^2", length, time);
+    size_t all = strlen(energy), end = strlen(ends);
+    bool fits = all > end && strcmp(energy + all - end, ends) == 0;
+    free(ends);
+    return fits
+               ? text_print("%.*s%s/%s", (int)(all - end), energy, length, time)
+               : NULL;
+}
+
 /* The unit that makes p dq/dt an energy; an angle counts as a number. */
 static char *momentum_unit(const plan *p, const char *coordinate) {
     const char *energy = nevh_scene_label(p->scene, "energy");
     const char *time = nevh_scene_label(p->scene, "t");
     const char *length = nevh_scene_label(p->scene, coordinate);
     bool angle = strcmp(length, "rad") == 0;
-    if (!is_plain(energy) || !is_plain(time) || !is_plain(length))
+    if (!is_plain(time) || !is_plain(length))
         return text_print("%s", "");
+    if (!is_plain(energy)) {
+        char *parts = angle ? NULL : unit_of_parts(energy, length, time);
+        return parts ? parts : text_print("%s", "");
+    }
     return angle ? text_print("%s %s", energy, time)
                  : text_print("%s %s/%s", energy, time, length);
 }

@@ -195,6 +195,14 @@ static bool conserves_energy(const costs *c, const study *l) {
     return l->end != STUDY_REFUSED && !costs_count(c, l);
 }
 
+static bool has_series(const costs *c, const study *l) {
+    return cost_shows(c, l) && nevh_integrator_needs_formulas(l->scheme);
+}
+
+static bool has_parts(const costs *c, const study *l) {
+    return cost_shows(c, l) && nevh_integrator_needs(l->scheme) & NEVH_PARTS;
+}
+
 static void name_words(const costs *c, list *words, const char *format,
                        bool (*holds)(const costs *, const study *)) {
     char *names = names_where(c, holds);
@@ -357,6 +365,9 @@ void cost_words(costs *c, list *words) {
     if (c->search.plan.friction && !c->search.plan.by_state)
         list_add(words, "Friction around a step is exact in the balance, "
                         "though not in the orbit: compare --by state.");
+    name_words(c, words, "a series counts as one evaluation.", has_series);
+    name_words(c, words, "exact steps of parts are not counted as evaluations.",
+               has_parts);
     failure_words(c, words);
     hidden_words(c, words);
     legend_words(c, words);
