@@ -1,6 +1,7 @@
 /* nevh: the analysis of chaos is planned.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/chaos_private.h"
+#include "diagnose/energy_private.h"
 #include "run/stepper_private.h"
 #include <fenv.h>
 #include <math.h>
@@ -245,6 +246,7 @@ static void chaos_lay_out(nevh__arena *a, void *chaos) {
     c->q = nevh__arena_take(a, rows, sizeof *c->q);
     c->p = nevh__arena_take(a, rows, sizeof *c->p);
     c->slope = nevh__arena_take(a, 2 * c->n, sizeof *c->slope);
+    c->marked = nevh__arena_take(a, 6 * c->n, sizeof *c->marked);
     c->place =
         nevh__arena_take(a, 2 * c->n * (c->deviations + 1), sizeof *c->place);
     for (size_t i = 0; i < c->starts; i++)
@@ -289,6 +291,7 @@ static nevh_chaos *chaos_make(const nevh_system *system,
         return NULL;
     c->system = system;
     c->of_members = of_members;
+    c->searches = !of_members && nevh__theory_doubts(system);
     c->integrator = o->integrator;
     c->n = system->n;
     c->starts = o->starts ? o->starts : STARTS;

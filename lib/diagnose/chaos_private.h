@@ -78,6 +78,12 @@ struct nevh_chaos {
     double *own;           /* q, p, scale: n, n, 2n */
     double *q, *p;         /* of the stepper */
     double *slope, *place; /* 2n */
+    /* Jumps of the force on the way of the first start: displacements miss what these
+       add to their growth. */
+    bool searches;  /* H may have some */
+    double *marked; /* 6n: the state at the step `mark`, that now, and room */
+    double mark, largest; /* largest: the sum of the terms' |values| */
+    size_t kinks;
     nevh__chaos_start *start;
     size_t first_stride, turn; /* turn: steps of a period */
     size_t stride;             /* steps between looks */

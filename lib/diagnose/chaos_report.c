@@ -199,6 +199,8 @@ static size_t starts_of(const nevh_chaos *c, nevh_chaos_verdict verdict) {
 static nevh_chaos_verdict verdict_among_starts(const nevh_chaos *c) {
     static const size_t enough = 4; /* starts to judge by */
     nevh_chaos_verdict own = verdict_on(c, 0);
+    if ((own == NEVH_REGULAR || own == NEVH_EARLY) && c->kinks)
+        return NEVH_UNRESOLVED;
     if (own != NEVH_CHAOTIC)
         return own;
     double error, value = nevh_chaos_exponent(c, 0, &error);
@@ -219,6 +221,7 @@ nevh_chaos_report nevh_chaos_result(const nevh_chaos *c) {
     r.verdict = verdict_among_starts(c);
     r.sali = c->start[0].sali;
     r.megno = nevh__chaos_megno(c, 0);
+    r.kinks = c->kinks > 0;
     r.starts = c->starts;
     r.agreeing = starts_of(c, verdict_on(c, 0));
     return r;

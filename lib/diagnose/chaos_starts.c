@@ -119,6 +119,8 @@ int nevh__chaos_begin(nevh_chaos *c) {
     int status = nevh_field_value(c->field, 1, &c->t_start, c->own,
                                   c->own + c->n, &energy);
     forget_all(c);
+    c->mark = c->largest = 0;
+    c->kinks = 0;
     for (size_t i = 0; !status && i < c->starts; i++) {
         uint64_t state = nevh__chaos_draw(c, i);
         memcpy(c->place, c->own, m * sizeof *c->own);

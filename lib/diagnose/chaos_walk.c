@@ -1,6 +1,7 @@
 /* nevh: orbits and displacements are taken forward, and growth is written down.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/chaos_private.h"
+#include "diagnose/kinks_private.h"
 #include "run/stepper_private.h"
 #include <math.h>
 #include <string.h>
@@ -265,6 +266,29 @@ double nevh__chaos_look(nevh_chaos *c, size_t start) {
     return growth;
 }
 
+/* For jumps of the force between the first start's state and that an eighth of the
+   steps ago. */
+static void chaos_walk_search(nevh_chaos *c) {
+    size_t n = c->n, at = c->tangent ? n : 0;
+    double done = c->start[0].clock.done, h, roundoff, size;
+    double t = c->t_start + done * c->way * c->dt, *now = c->marked + 2 * n;
+    if (!c->searches || done < c->mark + c->mark / 8)
+        return;
+    for (size_t k = 0; k < n; k++) {
+        now[k] = row_q(c, k)[0];
+        now[n + k] = row_p(c, at + k)[0];
+    }
+    if (nevh__field_moving_values(c->field, 1, &t, now, now + n, &h, &roundoff,
+                                  &size))
+        return;
+    c->largest = fmax(c->largest, size);
+    if (c->mark > 0 && nevh__kink_between(c->field, t, c->marked, now,
+                                          c->largest, true, now + 2 * n))
+        c->kinks++;
+    memcpy(c->marked, now, 2 * n * sizeof *now);
+    c->mark = done;
+}
+
 static int chaos_walk_look(nevh_chaos *c, double steps) {
     double most = 0;
     for (size_t i = 0; i < c->starts; i++) {
@@ -282,6 +306,7 @@ static int chaos_walk_look(nevh_chaos *c, double steps) {
         most = fmax(most, growth);
     }
     nevh__chaos_fill_up(c);
+    chaos_walk_search(c);
     if (most > most_growth && c->stride > 1)
         c->stride /= 2;
     return NEVH_OK;

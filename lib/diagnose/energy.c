@@ -226,7 +226,7 @@ static void search_kinks(nevh_energy *e, size_t lane, const double q[],
     energy_gather(e, lane, q, p);
     if (e->mark[lane] &&
         nevh__kink_between(e->field, e->t[lane], before, e->state,
-                           e->largest[lane], e->state + 2 * n))
+                           e->largest[lane], false, e->state + 2 * n))
         e->kinks[lane]++;
     memcpy(before, e->state, 2 * n * sizeof *before);
     e->mark[lane] = samples;

@@ -93,7 +93,23 @@ static double halve(line *l, double *begin, double *length) {
     return left + right < INFINITY ? fmax(left, right) : NAN;
 }
 
-static bool has_kink(line *l, double largest) {
+/* True if second differences around a place are in proportion to the step: where H'' alone
+   jumps they are to its square. */
+static bool jumps_in_slope(line *l, double place) {
+    enum { STEPS = 3 };
+    static const double shorter = 0x1p-4, first = 0x1p-8;
+    double middle = value_at(l, place), before = 0, step = first;
+    bool jumps = true;
+    for (int i = 0; jumps && i < STEPS; i++, step *= shorter) {
+        double met = fabs(value_at(l, place + step) - 2 * middle +
+                          value_at(l, place - step));
+        jumps = met > l->rounding && (!i || met > before * shorter / 2);
+        before = met;
+    }
+    return jumps;
+}
+
+static bool has_kink(line *l, double largest, bool slopes) {
     double met[MOST_HALVES], begin = 0, length = 1;
     int i = 0;
     for (int k = 0; k < POINTS; k += 2)
@@ -103,16 +119,18 @@ static bool has_kink(line *l, double largest) {
         met[i] = halve(l, &begin, &length);
     } while (met[i] > resolved * l->rounding && ++i < MOST_HALVES);
     i = i < MOST_HALVES ? i : MOST_HALVES - 1;
-    return i >= COMPARED && met[i] > smooth * met[i - COMPARED] &&
-           l->size <= largest;
+    bool kink = i >= COMPARED && met[i] > smooth * met[i - COMPARED] &&
+                l->size <= largest;
+    return kink && (!slopes || jumps_in_slope(l, begin + length / 2));
 }
 
 bool nevh__kink_between(nevh_field *f, double t, const double from[],
-                        const double to[], double largest, double room[]) {
+                        const double to[], double largest, bool slopes,
+                        double room[]) {
     line l = {.field = f, .t = t, .state = room, .from = from, .to = to};
     fenv_t own; /* as in nevh_stepper_new */
     feholdexcept(&own);
-    bool found = has_kink(&l, largest);
+    bool found = has_kink(&l, largest, slopes);
     fesetenv(&own);
     f->report = (nevh__report){0}; /* where H is not finite */
     return found;

@@ -92,6 +92,20 @@ static bool is_small_power(polynomial a, double c, double change) {
     return size + change == 0 || c * log(size + change) < small_power;
 }
 
+/* True if the last terms of a polynomial, at h, are small beside all: else it does not
+   tell what its function is there, such as 1/(x^2 + 1e-20) on the other side of 0. */
+static bool is_convergent(polynomial p, double h) {
+    static const double small = 1e-3;
+    double size = fabs(p.at[0]) + domain_size_of(p, h), power = 1;
+    if (p.orders < 3)
+        return true;
+    for (size_t k = 1; k + 2 < p.orders; k++)
+        power *= h;
+    double last = fabs(p.at[(p.orders - 2) * p.apart]) * power * h +
+                  fabs(p.at[(p.orders - 1) * p.apart]) * power * h * h;
+    return !(last > small * size);
+}
+
 /* True if the terms of a steep function decrease within -h to h, or the function is
    constant there. */
 static bool is_resolved(const nevh__edge *e, polynomial a, double h) {
@@ -118,7 +132,7 @@ static bool is_clear(const nevh__recurrence *r, const double rows[],
     const nevh__edge *e = &r->edges[i];
     polynomial a = {rows + i, r->n_watched, orders};
     polynomial b = {rows + e->also, r->n_watched, orders};
-    return e->steep    ? is_resolved(e, a, h)
+    return e->steep    ? is_convergent(a, h) && is_resolved(e, a, h)
            : e->also   ? is_off_cut(a, b, h)
            : e->strict ? keeps_sign(a, h)
                        : is_not_negative(a, h);

@@ -65,8 +65,10 @@ static double power_of(const nevh__graph *g, unsigned operation, int a, int b,
                        int *base) {
     const nevh__graph_node *x = &g->nodes[a], *y = &g->nodes[b];
     nevh__wide exponent;
-    *base = x->base;
+    *base = operation == NEVH__DIVIDE ? y->base : x->base;
     switch (operation) {
+    case NEVH__DIVIDE:
+        return -y->power;
     case NEVH__MULTIPLY:
         return x->base == y->base ? x->power + y->power : 0;
     case NEVH__SQUARE:
@@ -89,7 +91,7 @@ static void watch_power(nevh__graph *g, unsigned operation, int a, int b,
     int base;
     double power = power_of(g, operation, a, b, &base);
     double order = power * fmax(g->nodes[base].degree, 1);
-    if (order > least || order < -least_pole)
+    if (order > least || order <= -least_pole)
         edges_add(g, (nevh__graph_edge){.node = base,
                                         .also = -1,
                                         .jump = -1,
@@ -146,9 +148,11 @@ void nevh__graph_watch(nevh__graph *g, unsigned operation, int a, int b,
         e.strict = !nevh__graph_is_number(g, b, NULL);
         e.node = is_whole(g, b) ? -1 : a;
     } else if (operation == NEVH__ATAN2) {
-        e.node = a;
-        e.also = b;
-        e.jump = nevh__graph_angle(g, a, b);
+        nevh__wide y;
+        bool flat = nevh__graph_is_number(g, a, &y) && y == 0; /* 0 or pi */
+        e.node = flat ? b : a;
+        e.also = flat ? -1 : b;
+        e.jump = flat ? -1 : nevh__graph_angle(g, a, b);
     }
     edges_add(g, e);
 }

@@ -122,4 +122,31 @@ printf '%s\n' '[coordinates]' 'x = 1' '[effects]' 'kinetic = p_x^2/2' \
     >$work/damped.nevh
 exits 0 chaos $work/damped.nevh
 has 'regular: nearby orbits approach e-fold every (19|20|21)'
+# Where the force jumps, displacements say nothing: four sheets of mass, which are
+# chaotic.  Where its slope alone does, they do.
+cat >$work/sheets.nevh <<'END'
+[coordinates]
+x[1..4] = 0, 0.31, -0.42, 1.03
+p_x[1..4] = 0.3, -0.5, 0.1, 0.1
+[effects]
+k = sum(i = 1..4, p_x[i]^2/2)
+v = sum(i = 1..4, j = i+1..4, abs(x[i] - x[j]))
+[run]
+t_end = 1000
+dt = 0.01
+END
+exits 0 chaos $work/sheets.nevh --integrators verlet
+has 'not resolved: the force jumps'
+lacks 'regular:'
+exits 0 check $work/sheets.nevh
+has 'Chaotic or regular: not resolved: the force jumps'
+sed 's/abs(x.i. - x.j.)/sqrt((x[i] - x[j])^2 + 4e-4)/' $work/sheets.nevh >$work/soft.nevh
+exits 0 chaos $work/soft.nevh --integrators verlet
+has ': chaotic: nearby orbits separate'
+for v in 'max(abs(x) - 1, 0)^2 + y^2/2' 'abs(x)^3 + y^2/2' 'max(x, 0)^3 + x^2 + y^2 + x*y'; do
+    printf '%s\n' '[coordinates]' 'x = 1.5, 0.3' 'y = 0.2, 0.7' '[effects]' \
+        'k = (p_x^2 + p_y^2)/2' "v = $v" '[run]' 't_end = 1000' 'dt = 0.03' >$work/play.nevh
+    exits 0 chaos $work/play.nevh --integrators verlet
+    has ': regular: the largest exponent is 0 within'
+done
 exit $status

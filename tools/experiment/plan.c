@@ -212,6 +212,11 @@ static int take_times(plan *p, const options *o) {
     return o->t_end ? scene_number(p->scene, o, o->t_end, &p->t_end) : TOOL_OK;
 }
 
+const char plan_kinks_text[] =
+    "not resolved: the force jumps where the orbit goes, and the growth of "
+    "displacements misses what that adds; a short smooth bend, such as sqrt(x^2 "
+    "+ 1e-4) for abs(x), has an exponent.";
+
 /* The words of a setting in the title. */
 static char *change_of(const char *setting) {
     enum { MOST = 32 };

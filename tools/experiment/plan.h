@@ -180,4 +180,7 @@ int impact(const options *, plan *);
 /* needed.c: what nevh effects --needed prints. */
 int needed(const options *, plan *);
 
+/* Why neither chaos nor its absence is said of forces that jump. */
+extern const char plan_kinks_text[];
+
 #endif

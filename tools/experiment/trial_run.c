@@ -323,12 +323,16 @@ static void outlook_notes(const plan *p, const trial_run *f, list *notes) {
                    "equilibrium or periodic orbit, or in an escape.",
                    f->chaos.exponent, p->per_unit, time, p->unit);
         break;
+    case NEVH_UNRESOLVED:
+        list_print(notes, "Chaotic or regular: %s", plan_kinks_text);
+        break;
     case NEVH_REGULAR:
         list_print(notes,
                    "Regular: over %.3g%s the distance of neighbouring orbits "
                    "does not grow exponentially (Lyapunov exponent 0 within "
                    "%.1g%s).",
-                   time, p->unit, f->chaos.error, p->per_unit);
+                   time, p->unit, f->chaos.error + fabs(f->chaos.exponent),
+                   p->per_unit);
         break;
     default:
         if (f->length > 0)

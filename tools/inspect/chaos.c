@@ -96,7 +96,7 @@ static bool is_clear(const row *r, int *times) {
     nevh_chaos_verdict verdict = nevh_chaos_result(r->chaos).verdict;
     bool small = verdict != NEVH_EARLY && error < good_enough * value;
     *times = small ? *times + 1 : 0;
-    return verdict == NEVH_REGULAR || *times > 1;
+    return verdict == NEVH_REGULAR || verdict == NEVH_UNRESOLVED || *times > 1;
 }
 
 /* True if a run twice as long fits the budget. */
@@ -192,6 +192,11 @@ static void unresolved_words(chaos_job *j, const row *r) {
 
 static void row_words(chaos_job *j, const row *r) {
     nevh_chaos_report now = nevh_chaos_result(r->chaos);
+    if (now.verdict == NEVH_UNRESOLVED) {
+        list_print(&j->result.after, "%s, dt = %g: %s", r->integrator, r->dt,
+                   plan_kinks_text);
+        return;
+    }
     if (r->confirmed.verdict == NEVH_UNRESOLVED) {
         unresolved_words(j, r);
         return;
@@ -211,7 +216,7 @@ static void row_words(chaos_job *j, const row *r) {
                          -1 / value)
         : now.verdict == NEVH_REGULAR
             ? text_print("regular: the largest exponent is 0 within %.1g",
-                         error)
+                         fabs(value) + error)
             : text_print("too early to say at t = %.6g; --t-end takes it "
                          "further",
                          now.t);
