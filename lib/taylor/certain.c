@@ -25,7 +25,8 @@ struct nevh_certain {
     size_t n;
     int digits;
     nevh__recurrence *recurrence;
-    orbit fine, coarse; /* both of pairs, or neither */
+    orbit fine, coarse;                  /* both of pairs, or neither */
+    const volatile sig_atomic_t *ending; /* or NULL */
     double at, parted; /* times since t0: now, and when both were far apart; the
                            latter INFINITY: never */
     const nevh_system *system;
@@ -56,6 +57,7 @@ static int certain_start(nevh_certain *c, orbit *o, bool pairs,
             ? nevh__series_orbit_init_dd(&o->dd, c->recurrence, tolerance)
             : nevh__series_orbit_init_quad(&o->quad, c->recurrence, tolerance);
     o->dd.timing = o->quad.timing = c->timing;
+    o->dd.ending = o->quad.ending = c->ending;
     o->dd.backward = o->quad.backward = c->seen < (double)c->t0;
     const nevh__wide *start = o == &c->coarse ? c->other : c->start;
     return !fine ? nevh__no_memory(&c->report)
@@ -294,6 +296,15 @@ static int look_ahead(nevh_certain *c, double t) {
     return start_both(c, c->fine.pairs);
 }
 
+void nevh_certain_stop_at(nevh_certain *c,
+                          const volatile sig_atomic_t *ending) {
+    if (!c)
+        return;
+    c->ending = ending;
+    c->fine.dd.ending = c->fine.quad.ending = ending;
+    c->coarse.dd.ending = c->coarse.quad.ending = ending;
+}
+
 int nevh_certain_go_to(nevh_certain *c, double time, long double rest) {
     nevh__wide t = (nevh__wide)time + rest;
     if (!c || !certain_count(&c->fine))
@@ -394,6 +405,11 @@ nevh_certain *nevh_certain_new(const nevh_system *system, double t0,
 
 void nevh_certain_free(nevh_certain *c) {
     free(c);
+}
+
+void nevh_certain_stop_at(nevh_certain *c,
+                          const volatile sig_atomic_t *ending) {
+    (void)c, (void)ending;
 }
 
 int nevh_certain_go_to(nevh_certain *c, double time, long double rest) {

@@ -5,6 +5,7 @@
 
 #include "expression/timing_private.h"
 #include "taylor/series_private.h"
+#include <signal.h>
 
 /* A chain of series in numbers of one kind; the present one begins at time t.
    Functions return a status, with a message in the report. */
@@ -36,6 +37,8 @@ enum { NEVH__ORBIT_PAST = 128 };
         double held[NEVH__ORBIT_PAST], speed[NEVH__ORBIT_PAST];                    \
         bool ended; /* where the last one got too short, without bound */          \
         const nevh_timing *timing; /* NULL: of no concern; borrowed */             \
+        const volatile sig_atomic_t                                                \
+            *ending;          /* not 0: no further series; or NULL */              \
         bool backward, stops; /* stops: the series holds up to a break, */         \
         real stop;            /* after which the next one begins */                \
     } nevh__series_orbit_##kind;                                                   \

@@ -307,6 +307,9 @@ static void evaluate(orbit *o, real since) {
 
 int NAMED(nevh__series_orbit_next)(orbit *o, real t, nevh__report *report) {
     static const double longer = 0x1p20;
+    if (o->ending && *o->ending)
+        return nevh__fail(report, NEVH_EFAILED, "stopped at t = %.9g",
+                          (double)o->t);
     real next = t > o->t ? o->t + o->reach : o->t - o->reach;
     next = o->stops ? o->stop : next;
     if (!(o->reach > o->shortest * FUNCTION(fabs)(t - o->t)) || next == o->t) {

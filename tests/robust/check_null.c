@@ -24,6 +24,7 @@ static nevh_separability separability;
     X(TEXT, nevh_certain_message, (NULL))                                      \
     X(STATUS, nevh_certain_go, (NULL, 0.1))                                    \
     X(STATUS, nevh_certain_go_to, (NULL, 0.1, 0))                              \
+    X(ANY, nevh_certain_stop_at, (NULL, NULL))                                 \
     X(NUMBER, nevh_certain_series, (NULL))                                     \
     X(REAL, nevh_certain_value, (NULL, 0))                                     \
     X(REAL, nevh_certain_error, (NULL, 0))                                     \

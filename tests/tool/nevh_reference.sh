@@ -129,4 +129,9 @@ printf '[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = x^2/2 + x^4/4
     >$work/x.nevh
 error '$1 > 0 && $1 < 1e-13'
 
+# Series that get ever shorter end with the time allowed.
+printf '%s\n' '[coordinates]' 'x = 0.5, -2' '[effects]' 'k = p_x^2/2' \
+    'v = x^2/4 + x^4*sin(1/x)' '[run]' 't_end = 0.5' 'dt = 0.01' >$work/ever.nevh
+exits 1 reference $work/ever.nevh --stop-after 1s
+says 'takes more than the 1 s of --stop-after, stopped at t = 0.24'
 exit $status

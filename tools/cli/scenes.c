@@ -293,7 +293,7 @@ static int assign(nevh_scene *scene, const options *o, const char *setting) {
     return scene_report(scene, o);
 }
 
-static int read(nevh_scene *scene, const options *o) {
+static int apply_options(nevh_scene *scene, const options *o) {
     if (nevh_scene_status(scene))
         return scene_report(scene, o);
     for (size_t i = 0; i < o->settings.count; i++)
@@ -339,7 +339,7 @@ int scene_open_named(nevh_scene **scene, const char *name, const options *o) {
     if (!file)
         return TOOL_USAGE;
     *scene = read_switched(file, o);
-    bool good = *scene && !outputs_check(o, *scene, file) && !read(*scene, o);
+    bool good = *scene && !outputs_check(o, *scene, file) && !apply_options(*scene, o);
     free(file);
     if (good)
         return TOOL_OK;

@@ -3,7 +3,9 @@
 #include "cli/commands.h"
 #include "experiment/plan.h"
 #include <math.h>
+#include <signal.h>
 #include <stdlib.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 enum { MOST_DIGITS = 30 };
@@ -106,6 +108,36 @@ static int check_budget(const reference_job *j) {
     return TOOL_FAILED;
 }
 
+static volatile sig_atomic_t over; /* the budget is */
+
+static void note_end(int number) {
+    (void)number;
+    over = 1;
+}
+
+/* Series may get ever shorter: then no part of the way ends. */
+static void stop_after(nevh_certain *orbit, double seconds) {
+    double whole = floor(fmin(seconds, 1e9));
+    struct itimerval timer = {
+        .it_value = {(time_t)whole, (suseconds_t)(1e6 * (seconds - whole))}};
+    signal_catch(SIGPROF, note_end);
+    setitimer(ITIMER_PROF, &timer, NULL);
+    nevh_certain_stop_at(orbit, &over);
+}
+
+static int refuse(const reference_job *j, double t) {
+    clear_progress(j);
+    if (over)
+        tool_refuse("%s: t = %.9g takes more than the %g s of --stop-after, "
+                    "%s; series get shorter and shorter there",
+                    j->plan->name, t, j->budget,
+                    nevh_certain_message(j->orbit));
+    else
+        tool_refuse("the orbit has no reference at t = %.9g: %s", t,
+                    nevh_certain_message(j->orbit));
+    return TOOL_FAILED;
+}
+
 /* In parts of a tenth of a second or so; the orbit does not depend on them. */
 static int go(reference_job *j, moment at) {
     bool there = j->t >= at.time;
@@ -113,12 +145,8 @@ static int go(reference_job *j, moment at) {
         double before = cpu_seconds(), next = fmin(j->t + j->part, at.time);
         next = next > j->t ? next : nextafter(j->t, at.time);
         there = next == at.time;
-        if (nevh_certain_go_to(j->orbit, next, there ? at.rest : 0)) {
-            clear_progress(j);
-            tool_refuse("the orbit has no reference at t = %.9g: %s", at.time,
-                        nevh_certain_message(j->orbit));
-            return TOOL_FAILED;
-        }
+        if (nevh_certain_go_to(j->orbit, next, there ? at.rest : 0))
+            return refuse(j, at.time);
         j->t = next;
         j->part *= cpu_seconds() - before < 0.1 ? 2 : 0.5;
         show_progress(j);
@@ -232,6 +260,8 @@ static int reference_of(const options *o, const plan *p) {
     if (!status)
         status = start_orbit(o, &j);
     table_titles(result.table, reference_command.columns);
+    if (!status)
+        stop_after(j.orbit, j.budget);
     if (!status)
         status = put_states(&j, result.table);
     if (!status) {
