@@ -203,8 +203,10 @@ bool nevh__theory_doubts(const nevh_system *s) {
     return false;
 }
 bool nevh__kink_between(nevh_field *f, double t, const double from[],
-                        const double to[], double largest, double room[]) {
-    (void)f, (void)t, (void)from, (void)to, (void)largest, (void)room;
+                        const double to[], double largest, bool slopes,
+                        double room[]) {
+    (void)f, (void)t, (void)from, (void)to, (void)largest, (void)slopes,
+        (void)room;
     return false;
 }
 

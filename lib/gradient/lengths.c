@@ -15,12 +15,14 @@ static const double out_of_reach = 0x1p-26;
 /* The energy of a start beside that of its orbit. */
 static const double far_less = 0x1p-10;
 enum { FARTHEST = 400, LEAP = 8 }; /* powers of two from the first guess */
+enum { FROM_LEAST = 1100 }; /* the same, from a momentum that is nearly 0 */
 enum { FEWEST_AHEAD = 2, MOST_AHEAD = 30 }; /* distances at once */
 /* Doublings over which H is a power of the distance, or constant: it is so beyond. */
 enum { POWERS = 100 };
 enum { NEARER = 3, NEAREST = 24 }; /* below a distance that may be periods */
 static const double as_much = 0.125;
 static const double overflowing = 0x1p500;
+static const double least = 0x1p-1068; /* of the rounding of any value */
 /* Distances over the first one: beyond, what is not finite is no edge of a domain. */
 static const double no_edge = 0x1p60;
 enum { MOST_LANES = 4, TRIED_LANES = 64 };
@@ -104,7 +106,7 @@ static variation lengths_compare(double here, const double half[2],
     return (variation){
         lengths_larger(fabs(all[0] - here), fabs(all[1] - here)),
         lengths_larger(fabs(even - 4 * near_even), fabs(odd - 2 * near_odd)),
-        32 * DBL_EPSILON * most};
+        32 * DBL_EPSILON * most + least};
 }
 
 /* Beyond the length, or outside the domain. */
@@ -261,7 +263,7 @@ static double energy_length(const nevh__axis *a, double guess, double energy) {
             break;
         distance = ldexp(distance, -LEAP);
     }
-    for (int i = 0; i < FARTHEST; i++) {
+    for (int i = 0; i < FROM_LEAST; i++) {
         if (!(vary(a, distance).whole < energy))
             return distance;
         distance *= 2;

@@ -415,6 +415,23 @@ static bool is_close(search *s) {
     return close;
 }
 
+/* True if momenta that are far smaller give the velocities, too, as those of light. */
+static bool is_any_size(search *s) {
+    static const double close = 1e-12;
+    static const double least = 0x1p-300; /* squares underflow below 2^-511 */
+    double most = 0;
+    bool same = true;
+    for (size_t j = 0; j < s->rows; j++)
+        most = fmax(most, fabs(s->best[j]));
+    for (double factor = 1; same && factor * most > least; factor /= 1024) {
+        set_momenta(s, s->best, factor);
+        momenta_measure(s);
+        for (size_t j = 0; j < s->rows; j++)
+            same = same && fabs(offset(s, j)) <= close;
+    }
+    return same;
+}
+
 static int momenta_solve(search *s, nevh__report *report) {
     int status = NEVH_OK;
     choose_rows(s);
@@ -426,6 +443,12 @@ static int momenta_solve(search *s, nevh__report *report) {
         return nevh__fail(report, status, "out of memory");
     if (s->residual > CLOSE && !is_close(s))
         return momenta_refuse(s, report);
+    if (is_limit(s) && is_any_size(s))
+        return nevh__fail(report, NEVH_EMAXITER,
+                          "the initial velocities are those of momenta of any "
+                          "size: give p_%s, and others, in place of v_%s",
+                          s->m->coordinate_names[*s->row],
+                          s->m->coordinate_names[*s->row]);
     if (is_limit(s))
         return nevh__fail(report, NEVH_EMAXITER,
                           "%s: they are a limit, to which larger and larger "

@@ -125,6 +125,23 @@ TEST_EACH(terms_that_vanish_change_nothing, 3 * VANISHING) {
                       q[1][k], p[1][k], q[0][k], p[0][k]);
 }
 
+/* A momentum whose square underflows, or nearly so. */
+TEST(momenta_may_be_nearly_zero) {
+    static const double least[] = {1e-150, 1e-155, 1e-163, 1e-170, 1e-250};
+    for (size_t i = 0; i < sizeof least / sizeof *least; i++) {
+        char text[200];
+        double q[2], p[2];
+        snprintf(text, sizeof text,
+                 "[coordinates]\nx = 1, %g\n[effects]\nK = p_x^2/2\n"
+                 "V = x^2/2\n",
+                 least[i]);
+        take_steps(text, nevh_verlet, nevh_exact, 0.05, &q[0], &p[0]);
+        take_steps(text, nevh_verlet, nevh_central2, 0.05, &q[1], &p[1]);
+        ck_assert_double_eq_tol(q[1], q[0], 1e-12);
+        ck_assert_double_eq_tol(p[1], p[0], 1e-12);
+    }
+}
+
 /* Angles from 0 in units in which the arguments of waves are all rounding at a first
    guess of 1. */
 static const char *const waves[] = {"-cos(x/u)", "-2*cos(x/u) - cos(y/u)",

@@ -111,6 +111,8 @@ static const struct {
     {"p_x^2/(2*(x - 1))", {2}, 1, "effect \"H\" has no finite derivatives"},
     {"x^2", {2}, 1, "v_x comes no closer to 2 than 0"},
     {"(p_x + p_y)^2/2", {1, 2}, 2, "comes no closer"},
+    {"2*abs(p_x)", {2}, 1, "momenta of any size"},
+    {"hypot(p_x, p_y)", {0.6, 0.8}, 2, "momenta of any size"},
     {"1 - cos(p_x)", {1.25}, 1, "comes no closer to 1.25 than "},
 };
 
@@ -121,7 +123,8 @@ TEST_EACH(what_no_momentum_gives_is_told,
         scene_of(impossible[_i].h, impossible[_i].n, impossible[_i].v);
     ck_assert_msg(nevh_scene_start(s, q, p) == NEVH_EMAXITER, "%s",
                   impossible[_i].h);
-    assert_says(nevh_scene_message(s), "no momenta were found");
+    if (!strstr(impossible[_i].why, "any size"))
+        assert_says(nevh_scene_message(s), "no momenta were found");
     assert_says(nevh_scene_message(s), impossible[_i].why);
     nevh_scene_free(s);
 }
