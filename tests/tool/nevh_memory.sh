@@ -1,7 +1,8 @@
 #!/bin/sh
 # Every command where memory runs out: at one allocation, or from one on.  It
 # never crashes or hangs, says so, leaves no file that is begun, and what it does
-# print is right.  SLOW=yes: at twenty times as many allocations, or at each.
+# print is right.  sheet and mark are Python's.  SLOW=yes: at twenty times as many
+# allocations, or at each.
 
 . "${srcdir:-.}/tests/support/nevh_support.sh"
 . "$srcdir/tests/support/nevh_interrupt.sh"
@@ -53,6 +54,12 @@ starves() {
     unset STARVE_COUNT
     test $code -le 1 || fails "does not work where there is memory ($code)"
     count=$(tail -n 1 $work/err)
+    case $count in
+    *[!0-9]* | '') # as of another program, which takes the place of nevh
+        fails "has no count of allocations"
+        return
+        ;;
+    esac
     test "$SLOW" = yes && places=$((20 * places))
     steady $work/out >$work/right
     made=$(ls $work/made* 2>/dev/null | head -n 1)
@@ -108,7 +115,6 @@ starves 4 chaos henon-heiles --t-end 20
 starves 4 frequencies henon-heiles --t-end 100
 starves 4 export kepler --integrators gauss4 --dt 0.1 -o $work/made.c
 starves 5 check pendulum --t-end 0.5
-printf 'name,task,answer\nAda,1.1a,2\n' >$work/answers.csv
 same= # times are measured
 starves 12 compare pendulum --t-end 1 --diagnostics \
     --integrators verlet,gauss4,gsl-rk8pd,dopri5,tao4,gonzalez
@@ -135,7 +141,4 @@ starves 2 compare pendulum --t-end 0.5 --plot $work/made.svg --plot-kind order \
 starves 2 portrait pendulum --t-end 1 --vary phi=0.5,1 --plot $work/made.svg
 
 starves 2 flow pendulum --t-end 1 --plot $work/made.svg
-starves 2 sheet
-starves 2 sheet 1 -o $work/made.html
-starves 2 mark $work/answers.csv
 exit $status
