@@ -14,6 +14,8 @@ static const double not_quadratic = 0.2;
 static const double out_of_reach = 0x1p-26;
 /* The energy of a start beside that of its orbit. */
 static const double far_less = 0x1p-10;
+/* The same, of an orbit that has no size, beside that over coordinates of 1. */
+static const double as_at_rest = 0x1p-40;
 enum { FARTHEST = 400, LEAP = 8 }; /* powers of two from the first guess */
 enum { FROM_LEAST = 1100 }; /* the same, from a momentum that is nearly 0 */
 enum { FEWEST_AHEAD = 2, MOST_AHEAD = 30 }; /* distances at once */
@@ -258,12 +260,12 @@ double nevh__curve_length(const nevh__axis *a, double guess) {
    then up by twos.  NAN: it does not vary so much. */
 static double energy_length(const nevh__axis *a, double guess, double energy) {
     double distance = guess;
-    for (int i = 0; i < FARTHEST / LEAP; i++) {
+    for (int i = 0; i < FROM_LEAST / LEAP; i++) {
         if (!(vary(a, distance).whole >= energy))
             break;
         distance = ldexp(distance, -LEAP);
     }
-    for (int i = 0; i < FROM_LEAST; i++) {
+    for (int i = 0; i < FROM_LEAST && distance < overflowing; i++) {
         if (!(vary(a, distance).whole < energy))
             return distance;
         distance *= 2;
@@ -371,9 +373,10 @@ static double *look_along_orbit(nevh__step_selection *e, double *energy) {
     bool any = *energy == 0;
     bool found = sizes && nevh__sizes_from_start(e, any, sizes);
     e->sizes = found ? sizes : NULL;
-    if (found || any)
-        visit_all(e, find_from_rest, &along);
-    if (any || (*energy < far_less * along && is_straight_later(e)))
+    visit_all(e, find_from_rest, &along);
+    bool less = found ? *energy < far_less * along && is_straight_later(e)
+                      : *energy < as_at_rest * along;
+    if (any || less)
         *energy = along;
     else
         e->sizes = NULL;

@@ -180,10 +180,11 @@ bool nevh__follow_orbit(nevh_field *f, double t, const double q[],
     return found;
 }
 
-/* Sizes when half of the short steps have been taken; the last state. */
+/* Sizes after the first short step, and when half of them have been taken; the last
+   state. */
 typedef struct {
     const double *sizes;
-    double *half, *q, *p;
+    double *first, *half, *q, *p;
     size_t n;
     int steps;
 } halfway;
@@ -191,7 +192,9 @@ typedef struct {
 static void rest_remember(void *context, double t, double h, const double y[]) {
     halfway *w = context;
     (void)t, (void)h;
-    if (++w->steps == ENOUGH / 2)
+    if (++w->steps == 1)
+        memcpy(w->first, w->sizes, 2 * w->n * sizeof *y);
+    if (w->steps == ENOUGH / 2)
         memcpy(w->half, w->sizes, 2 * w->n * sizeof *y);
     memcpy(w->q, y, w->n * sizeof *y);
     memcpy(w->p, y + w->n, w->n * sizeof *y);
@@ -201,13 +204,17 @@ bool nevh__sizes_from_start(const nevh__step_selection *e, bool escapes,
                             double sizes[]) {
     const nevh__samples *s = &e->samples;
     size_t n = e->field->n;
-    double *half = nevh__array(2 * n, sizeof *half);
-    halfway w = {sizes, half, s->q + s->most * n, s->p + s->most * n, n, 0};
-    bool found = half && has_gradients(e->field) &&
+    double *first = nevh__array(4 * n, sizeof *first), *half = first + 2 * n;
+    double *q = s->q + s->most * n, *p = s->p + s->most * n;
+    halfway w = {sizes, first, half, q, p, n, 0};
+    bool found = first && has_gradients(e->field) &&
                  nevh__follow_orbit(e->field, s->t[0], s->q, s->p, sizes,
                                     rest_remember, &w);
+    bool leaves = false;
     for (size_t i = 0; found && i < 2 * n; i++)
-        found = escapes || sizes[i] <= most_growth * half[i];
-    free(half);
-    return found;
+        leaves = leaves || !(sizes[i] <= most_growth * half[i]);
+    if (leaves)
+        memcpy(sizes, first, 2 * n * sizeof *sizes);
+    free(first);
+    return found && (escapes || !leaves);
 }

@@ -87,11 +87,14 @@ static double power_of(const nevh__graph *g, unsigned operation, int a, int b,
 /* Watches a power of higher order than a series may resolve. */
 static void watch_power(nevh__graph *g, unsigned operation, int a, int b,
                         const char *effect) {
-    static const double least = 12, least_pole = 4;
+    static const double least = 12, least_pole = 4, least_quotient = 2;
     int base;
     double power = power_of(g, operation, a, b, &base);
     double order = power * fmax(g->nodes[base].degree, 1);
-    if (order > least || order <= -least_pole)
+    bool sum = operation == NEVH__DIVIDE &&
+               g->nodes[base].kind == NEVH__GRAPH_ADD; /* as 1/(1 + x^2) */
+    double pole = sum ? least_quotient : least_pole;
+    if (order > least || order <= -pole)
         edges_add(g, (nevh__graph_edge){.node = base,
                                         .also = -1,
                                         .jump = -1,

@@ -125,6 +125,39 @@ TEST_EACH(terms_that_vanish_change_nothing, 3 * VANISHING) {
                       q[1][k], p[1][k], q[0][k], p[0][k]);
 }
 
+/* Starts at rest at 0, or nearly so: fields without a size, orbits that leave as exp(t),
+   and H that is straight in a variable. */
+static const struct {
+    const char *start, *h;
+} falls[] = {
+    {"x = 0\np_x = 1e-8\ny = 0", "(p_x^2 + p_y^2)/2 + 9.8*y"},
+    {"x = 0\np_x = 1e-6\ny = 0", "(p_x^2 + p_y^2)/2 + 9.8*y"},
+    {"x = 0\ny = 0", "(p_x^2 + p_y^2)/2 + x + y^2/2 + x*y"},
+    {"x = 0\ny = 0", "(p_x^2 + p_y^2)/2 + x*exp(y) + y^2/2"},
+    {"x = 0\ny = 0", "(p_x^2 + p_y^2)/2 + x*(2 + y)"},
+    {"x = 0\ny = 0", "(p_x^2 + p_y^2)/2 + sin(x) + x*y"},
+    {"x = 0\ny = 0.1", "(p_x^2 + p_y^2)/2 + x*cos(y)"},
+};
+enum { FALLS = sizeof falls / sizeof *falls };
+
+TEST_EACH(falls_from_rest_are_those_of_exact_gradients, FALLS) {
+    static const nevh_gradient *const *const differences[] = {&nevh_central2,
+                                                              &nevh_central8};
+    char text[400];
+    double q[2][2], p[2][2];
+    snprintf(text, sizeof text, "[coordinates]\n%s\n[effects]\nH = %s\n",
+             falls[_i].start, falls[_i].h);
+    take_steps(text, nevh_verlet, nevh_exact, 0.005, q[0], p[0]);
+    for (size_t i = 0; i < 2; i++) {
+        take_steps(text, nevh_verlet, *differences[i], 0.005, q[1], p[1]);
+        for (int k = 0; k < 2; k++)
+            ck_assert_msg(fabs(q[1][k] - q[0][k]) < 1e-8 &&
+                              fabs(p[1][k] - p[0][k]) < 1e-8,
+                          "%s: %.17g, %.17g for %.17g, %.17g", falls[_i].h,
+                          q[1][k], p[1][k], q[0][k], p[0][k]);
+    }
+}
+
 /* A momentum whose square underflows, or nearly so. */
 TEST(momenta_may_be_nearly_zero) {
     static const double least[] = {1e-150, 1e-155, 1e-163, 1e-170, 1e-250};
