@@ -41,8 +41,8 @@ NEVH_API const char *nevh_certain_message(const nevh_certain *);
 NEVH_API int nevh_certain_go(nevh_certain *, double t);
 /* The same to time + rest: of a time that no double is. */
 NEVH_API int nevh_certain_go_to(nevh_certain *, double time, long double rest);
-/* Calls return NEVH_EFAILED soon after *ending is not 0, as a handler of a signal or
-   another thread may set it: series may get ever shorter for a long time.
+/* Calls return NEVH_EFAILED soon after *ending is not 0, as a handler of a signal
+   may set it: series may get ever shorter for a long time.
    ending   borrowed while the orbit lives; NULL: none */
 NEVH_API void nevh_certain_stop_at(nevh_certain *,
                                    const volatile sig_atomic_t *ending);

@@ -72,7 +72,7 @@ typedef enum {
     NEVH_REGULAR,        /* they grow as those of a regular orbit */
     NEVH_UNSTABLE_ORBIT, /* they grow exponentially, but that is not chaos */
     NEVH_UNRESOLVED /* CHAOTIC or REGULAR of the steps, but not of finer ones; or
-                       neither where the force jumps, which displacements miss */
+                       REGULAR where the force jumps, which displacements miss */
 } nevh_chaos_verdict;
 /* "early", "chaotic", "regular", "unstable", "unresolved"; "unknown" for other
    numbers. */

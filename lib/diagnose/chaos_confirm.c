@@ -104,7 +104,7 @@ static nevh_chaos *finer_chaos(const nevh_chaos *c, const nevh_finer *f) {
 static bool is_chaotic_too(const nevh_chaos_confirmation *c) {
     const nevh_chaos_finding *f = &c->found;
     return f->report.verdict == NEVH_CHAOTIC ||
-           (f->report.verdict == NEVH_EARLY && c->agrees &&
+           ((f->report.verdict == NEVH_EARLY || f->report.kinks) && c->agrees &&
             f->exponent > 2 * f->error);
 }
 

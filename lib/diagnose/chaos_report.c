@@ -199,7 +199,7 @@ static size_t starts_of(const nevh_chaos *c, nevh_chaos_verdict verdict) {
 static nevh_chaos_verdict verdict_among_starts(const nevh_chaos *c) {
     static const size_t enough = 4; /* starts to judge by */
     nevh_chaos_verdict own = verdict_on(c, 0);
-    if ((own == NEVH_REGULAR || own == NEVH_EARLY) && c->kinks)
+    if (own == NEVH_REGULAR && c->kinks)
         return NEVH_UNRESOLVED;
     if (own != NEVH_CHAOTIC)
         return own;

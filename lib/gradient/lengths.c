@@ -260,7 +260,7 @@ double nevh__curve_length(const nevh__axis *a, double guess) {
    then up by twos.  NAN: it does not vary so much. */
 static double energy_length(const nevh__axis *a, double guess, double energy) {
     double distance = guess;
-    for (int i = 0; i < FROM_LEAST / LEAP; i++) {
+    for (int i = 0; i < FROM_LEAST / LEAP && distance > DBL_MIN; i++) {
         if (!(vary(a, distance).whole >= energy))
             break;
         distance = ldexp(distance, -LEAP);
@@ -358,11 +358,16 @@ static void find_from_rest(nevh__step_selection *e, const nevh__planned *term,
 /* True where H is quadratic in each variable at the end of the orbit, too. */
 static bool is_straight_later(nevh__step_selection *e) {
     double energy = 0;
+    size_t bytes = 2 * e->field->n * sizeof *e->length;
+    double *lengths = nevh__copy(e->length, 2 * e->field->n, sizeof *lengths);
+    if (!lengths)
+        return false;
     e->at = e->samples.most;
     e->samples.t[e->at] = e->samples.t[0];
     visit_all(e, find_curved, &energy);
     e->at = 0;
-    memset(e->length, 0, 2 * e->field->n * sizeof *e->length);
+    memcpy(e->length, lengths, bytes);
+    free(lengths);
     return energy == 0;
 }
 
@@ -374,9 +379,8 @@ static double *look_along_orbit(nevh__step_selection *e, double *energy) {
     bool found = sizes && nevh__sizes_from_start(e, any, sizes);
     e->sizes = found ? sizes : NULL;
     visit_all(e, find_from_rest, &along);
-    bool less = found ? *energy < far_less * along && is_straight_later(e)
-                      : *energy < as_at_rest * along;
-    if (any || less)
+    double little = found ? far_less : as_at_rest;
+    if (any || (*energy < little * along && (!found || is_straight_later(e))))
         *energy = along;
     else
         e->sizes = NULL;

@@ -204,7 +204,8 @@ bool nevh__sizes_from_start(const nevh__step_selection *e, bool escapes,
                             double sizes[]) {
     const nevh__samples *s = &e->samples;
     size_t n = e->field->n;
-    double *first = nevh__array(4 * n, sizeof *first), *half = first + 2 * n;
+    double *first = nevh__array(4 * n, sizeof *first);
+    double *half = first ? first + 2 * n : NULL;
     double *q = s->q + s->most * n, *p = s->p + s->most * n;
     halfway w = {sizes, first, half, q, p, n, 0};
     bool found = first && has_gradients(e->field) &&

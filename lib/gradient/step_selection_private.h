@@ -83,8 +83,10 @@ double nevh__curve_length(const nevh__axis *, double guess);
    samples that matter. */
 void nevh__find_lengths(nevh__step_selection *);
 /* The largest size that each variable reaches, 2n, on the orbit from the first
-   sample, of one that leaves as exp(t) as soon as it does; false where that is not to be
-   found, or unless `escapes` where the orbit so leaves.  Where it ends is then the state after the last sample. */
+   sample, which ends at the state after the last sample.  Of an orbit that leaves
+   as exp(t) they are sizes at first, if `escapes`.
+   returns  false where they are not to be found, or where an orbit leaves so and
+            `escapes` is false */
 bool nevh__sizes_from_start(const nevh__step_selection *, bool escapes,
                             double sizes[]);
 /* From now on they are those of the field, of one orbit; false when memory is

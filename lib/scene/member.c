@@ -11,11 +11,21 @@ uint64_t nevh_scene_members(const nevh_scene *s) {
                : 0;
 }
 
-/* A velocity decides on the momentum, too. */
+/* True of x and of x[1..3], which are several elements. */
+static bool is_several(const char *name) {
+    const char *index = strchr(name, '[');
+    return !index || strspn(index + 1, "0123456789") + 1 < strcspn(index, "]");
+}
+
+/* A velocity decides on the momentum, too; all elements on one. */
 static bool is_same_start(const char *a, const char *b) {
     bool both = strchr("pv", a[0]) && strchr("pv", b[0]) && a[0] && b[0] &&
                 a[1] == '_' && b[1] == '_';
-    return strcmp(both ? a + 2 : a, both ? b + 2 : b) == 0;
+    size_t length = strcspn(a += both ? 2 : 0, "[");
+    b += both ? 2 : 0;
+    bool any = is_several(a) || is_several(b);
+    return any ? strcspn(b, "[") == length && strncmp(a, b, length) == 0
+               : strcmp(a, b) == 0;
 }
 
 bool nevh_scene_varies(const nevh_scene *s, const char *name) {

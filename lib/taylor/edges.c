@@ -91,7 +91,7 @@ static void watch_power(nevh__graph *g, unsigned operation, int a, int b,
     int base;
     double power = power_of(g, operation, a, b, &base);
     double order = power * fmax(g->nodes[base].degree, 1);
-    bool sum = operation == NEVH__DIVIDE &&
+    bool sum = (operation == NEVH__DIVIDE || operation == NEVH__POWER) &&
                g->nodes[base].kind == NEVH__GRAPH_ADD; /* as 1/(1 + x^2) */
     double pole = sum ? least_quotient : least_pole;
     if (order > least || order <= -pole)

@@ -214,5 +214,13 @@ exits 2 section henon-heiles --start v_y=0.3
 exits 2 sweep henon-heiles --vary 'y = range(0.1, 0.2, 2)' --start y=3
 exits 2 sweep pendulum --vary 'g = 9, 10' --set g=3
 exits 0 section henon-heiles --start x=0 --t-end 20
+printf '%s\n' '[coordinates]' 'x[1..3] = 0.1' '[effects]' 'k = sum(i = 1..3, p_x[i]^2)' \
+    'v = sum(i = 1..3, x[i]^4)' '[ensemble]' 'x[2] = 0.1, 0.2' '[run]' 't_end = 1' \
+    'dt = 0.1' '[sections]' 's = when x[1] = 0, both: x[2]' >$work/array.nevh
+for start in x[2]=0 x=0 'x[1..3] = 0' p_x[1]=0; do
+    case $start in p*) code=0 ;; *) code=2 ;; esac
+    exits $code sweep $work/array.nevh --start "$start"
+done
+exits 0 sweep $work/array.nevh --start x[1]=0
 exits 0 run henon-heiles --start p_x=0.3 --t-end 1
 exit $status

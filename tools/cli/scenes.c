@@ -339,7 +339,8 @@ int scene_open_named(nevh_scene **scene, const char *name, const options *o) {
     if (!file)
         return TOOL_USAGE;
     *scene = read_switched(file, o);
-    bool good = *scene && !outputs_check(o, *scene, file) && !apply_options(*scene, o);
+    bool good =
+        *scene && !outputs_check(o, *scene, file) && !apply_options(*scene, o);
     free(file);
     if (good)
         return TOOL_OK;

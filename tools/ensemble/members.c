@@ -43,7 +43,10 @@ int members_check(const plan *p, const options *o) {
         const char *text = setting + 1 + strspn(setting + 1, " ");
         if (!strchr("@=", *setting))
             continue;
-        char *name = text_print("%.*s", (int)strcspn(text, " ="), text);
+        size_t length = strcspn(text, "=");
+        while (length && text[length - 1] == ' ')
+            length--;
+        char *name = text_print("%.*s", (int)length, text);
         bool varies = nevh_scene_varies(p->scene, name);
         free(name);
         if (varies)

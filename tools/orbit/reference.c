@@ -129,7 +129,7 @@ static int refuse(const reference_job *j, double t) {
     clear_progress(j);
     if (over)
         tool_refuse("%s: t = %.9g takes more than the %g s of --stop-after, "
-                    "%s; series get shorter and shorter there",
+                    "%s",
                     j->plan->name, t, j->budget,
                     nevh_certain_message(j->orbit));
     else
@@ -264,6 +264,7 @@ static int reference_of(const options *o, const plan *p) {
         stop_after(j.orbit, j.budget);
     if (!status)
         status = put_states(&j, result.table);
+    setitimer(ITIMER_PROF, &(struct itimerval){0}, NULL);
     if (!status) {
         clear_progress(&j);
         put_notes(&j, &result);

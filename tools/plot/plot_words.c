@@ -15,7 +15,8 @@ static char *unit_of_parts(const char *energy, const char *length,
                            const char *time) {
     char *ends = text_print("%s^2/%s^2", length, time);
     size_t all = strlen(energy), end = strlen(ends);
-    bool fits = all > end && strcmp(energy + all - end, ends) == 0;
+    bool fits = all > end && energy[all - end - 1] == ' ' &&
+                strcmp(energy + all - end, ends) == 0;
     free(ends);
     return fits
                ? text_print("%.*s%s/%s", (int)(all - end), energy, length, time)
