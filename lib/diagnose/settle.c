@@ -1,6 +1,7 @@
 /* nevh: verdicts that a run leaves open, from a longer one.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/stepper_private.h"
+#include <float.h>
 #include <math.h>
 #include <nevh/diagnose.h>
 #include <stdlib.h>
@@ -273,6 +274,8 @@ static nevh_verdict judge_longer(const nevh_energy_report *own,
 int nevh_verdict_settle(nevh_stepper *s, nevh_energy *energy,
                         const nevh_judged_run *r, nevh_energy_report *report) {
     bool level = report->verdict == NEVH_BOUNDED;
+    if (report->scale > 0 && report->scale < DBL_MIN)
+        return NEVH_OK; /* of H below the least normal number no run tells */
     double enough = confirming(r);
     double times = fmax(enough, lengths(r));
     if (level ? enough < least : report->verdict != NEVH_UNDECIDED)

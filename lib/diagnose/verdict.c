@@ -1,6 +1,7 @@
 /* nevh: the verdict on a run's energy.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include <nevh/diagnose.h>
+#include <float.h>
 #include <math.h>
 
 enum { FEWEST = 12 };                    /* errors that a rule is made for */
@@ -155,6 +156,8 @@ static nevh_verdict verdict_judge(const nevh_energy_report *r, double times) {
     if (r->theory == NEVH_THEORY_NONE)
         times = INFINITY;
     if (r->samples <= 1) /* of the start alone */
+        return NEVH_UNDECIDED;
+    if (r->scale > 0 && r->scale < DBL_MIN) /* of rounding alone */
         return NEVH_UNDECIDED;
     if (is_carried(r))
         return NEVH_UNDECIDED;
