@@ -379,7 +379,8 @@ static double *look_along_orbit(nevh__step_selection *e, double *energy) {
     bool found = sizes && nevh__sizes_from_start(e, any, sizes);
     e->sizes = found ? sizes : NULL;
     visit_all(e, find_from_rest, &along);
-    double little = found ? far_less : as_at_rest;
+    double none = nevh__has_gradients(e->field) ? as_at_rest : 0;
+    double little = found ? far_less : none;
     if (any || (*energy < little * along && (!found || is_straight_later(e))))
         *energy = along;
     else

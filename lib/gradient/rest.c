@@ -55,7 +55,7 @@ static void rest_add_block(nevh_field *f, const nevh__planned *term,
         }
 }
 
-static bool has_gradients(const nevh_field *f) {
+bool nevh__has_gradients(const nevh_field *f) {
     for (size_t i = 0; i < f->n_terms; i++)
         if (f->terms[i].nv && !f->terms[i].term->decl.gradient)
             return false;
@@ -83,11 +83,11 @@ static int motion(double t, const double y[], double dydt[], void *of) {
     size_t n = f->n;
     double sum = 0;
     memset(dydt, 0, 2 * n * sizeof *dydt);
-    if (has_gradients(f))
+    if (nevh__has_gradients(f))
         add_terms(f, t, y, dydt);
     else if (nevh_field_gradient(f, 1, &t, y, y + n, dydt + n, dydt))
         return GSL_EBADFUNC;
-    for (size_t i = 0; i < n && !has_gradients(f); i++)
+    for (size_t i = 0; i < n && !nevh__has_gradients(f); i++)
         dydt[n + i] = -dydt[n + i];
     for (size_t i = 0; m->friction && i < n; i++)
         dydt[n + i] -= m->friction[i] * y[n + i];
@@ -208,7 +208,7 @@ bool nevh__sizes_from_start(const nevh__step_selection *e, bool escapes,
     double *half = first ? first + 2 * n : NULL;
     double *q = s->q + s->most * n, *p = s->p + s->most * n;
     halfway w = {sizes, first, half, q, p, n, 0};
-    bool found = first && has_gradients(e->field) &&
+    bool found = first && nevh__has_gradients(e->field) &&
                  nevh__follow_orbit(e->field, s->t[0], s->q, s->p, sizes,
                                     rest_remember, &w);
     bool leaves = false;

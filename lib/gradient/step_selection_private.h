@@ -82,6 +82,8 @@ double nevh__curve_length(const nevh__axis *, double guess);
 /* Fills length with the shortest over the lanes, of which it makes those
    samples that matter. */
 void nevh__find_lengths(nevh__step_selection *);
+/* True if all terms bring gradients, so that their orbits can be followed. */
+bool nevh__has_gradients(const nevh_field *);
 /* The largest size that each variable reaches, 2n, on the orbit from the first
    sample, which ends at the state after the last sample.  Of an orbit that leaves
    as exp(t) they are sizes at first, if `escapes`.
