@@ -96,19 +96,20 @@ NEVH_API const char *nevh_chaos_verdict_name(nevh_chaos_verdict);
 typedef struct {
     double t;
     nevh_chaos_verdict verdict;
-    double sali;  /* the smaller alignment index of two displacements: falls
+    double sali;   /* the smaller alignment index of two displacements: falls
                         as exp(-(l1 - l2) t) in chaos, stays above 0 on a torus
                         of two dimensions or more [Ch. Skokos, J. Phys. A 34
                         (2001) 10029] */
-    double megno; /* the mean over time of 2/t int t' dlog|w|: 2 for a regular
+    double megno;  /* the mean over time of 2/t int t' dlog|w|: 2 for a regular
                         orbit (0 where all periods are equal), t times half the
                         exponent in chaos [P. M. Cincotta, C. M. Giordano, C.
                         Simo, Physica D 182 (2003) 151] */
-    bool kinks; /* the force jumps where the orbit goes, as that of abs(x): the
-                        growth of displacements misses what that adds */
     size_t starts; /* of all that run, */
     size_t
         agreeing; /* those on which the verdict is that on the orbit, each by itself */
+    /* The force jumps where the orbit goes, as that of abs(x): the growth of
+       displacements misses what that adds. */
+    bool kinks;
 } nevh_chaos_report;
 /* Zeros, and EARLY, before the first step and for NULL. */
 NEVH_API nevh_chaos_report nevh_chaos_result(const nevh_chaos *);

@@ -93,8 +93,8 @@ static double halve(line *l, double *begin, double *length) {
     return left + right < INFINITY ? fmax(left, right) : NAN;
 }
 
-/* True if second differences around a place are in proportion to the step: where H'' alone
-   jumps they are to its square. */
+/* True if second differences around a place are in proportion to the step: where
+   H'' alone jumps they are to its square. */
 static bool jumps_in_slope(line *l, double place) {
     enum { STEPS = 3 };
     static const double shorter = 0x1p-4, first = 0x1p-8;

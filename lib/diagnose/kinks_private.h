@@ -7,10 +7,10 @@
 
 /* Searches the straight line between two states for a kink or a jump of H, or of
    its slope, with values of H alone.
-   slopes    jumps of H and of its slope alone count, not those of its curvature
    from, to  2n each, coordinates first
    largest   the sum of terms' |values| that the orbit met: places above it are not
              where the orbit goes
+   slopes    jumps of H and of its slope alone count, not those of its curvature
    room      2n
    returns   whether there is one; not where H is not finite */
 bool nevh__kink_between(nevh_field *, double t, const double from[],

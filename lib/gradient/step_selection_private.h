@@ -44,7 +44,7 @@ typedef struct {
     size_t at;      /* the one whose lengths are looked for */
     bool shortened; /* a length, there */
     const double
-        *sizes;        /* 2n: of an orbit from rest, while lengths are found */
+        *sizes;        /* 2n: of the orbit, while lengths are found */
     size_t neighbours; /* the first sample displaced at random */
     bool scales_alone; /* no steps are tried: the pilot ends with the scales */
 } nevh__step_selection;

@@ -3,11 +3,13 @@
 #include "tool.h"
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 /* mkostemp lets only the owner read.  A file that is replaced keeps its mode. */
@@ -87,6 +89,14 @@ void signal_catch(int number, void (*note)(int)) {
     struct sigaction found, caught = {.sa_handler = note};
     if (sigaction(number, NULL, &found) == 0 && found.sa_handler != SIG_IGN)
         sigaction(number, &caught, NULL);
+}
+
+void timer_start(int timer, double seconds) {
+    seconds = fmin(seconds, 1e9);
+    double whole = floor(seconds);
+    struct itimerval end = {
+        .it_value = {(time_t)whole, (suseconds_t)(1e6 * (seconds - whole))}};
+    setitimer(timer, &end, NULL);
 }
 
 void signals_catch(void (*note)(int), const char *late) {

@@ -341,6 +341,9 @@ int output_claim(output *, const char *name, const char *who);
          `note`: steps may have a million substeps; kept */
 void signals_catch(void (*note)(int), const char *late);
 void signal_catch(int number, void (*note)(int));
+/* Sends the signal of a timer, ITIMER_REAL or ITIMER_PROF, after so many seconds; 0:
+   never. */
+void timer_start(int timer, double seconds);
 /* Ends the program as that signal does. */
 void signal_end(int number);
 /* Calls `leave` where the program ends before it is taken back by NULL: with the

@@ -31,11 +31,7 @@ static void note_signal(int number) {
 /* Unless the seconds are 0. */
 static void stop_after(double seconds) {
     signal_catch(SIGALRM, note_time);
-    double whole = floor(fmin(seconds, 1e9));
-    struct itimerval timer = {
-        .it_value = {(time_t)whole, (suseconds_t)(1e6 * (seconds - whole))}};
-    if (seconds > 0)
-        setitimer(ITIMER_REAL, &timer, NULL);
+    timer_start(ITIMER_REAL, seconds);
 }
 
 /* All that a record depends on. */

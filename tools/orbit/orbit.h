@@ -35,7 +35,8 @@ typedef void orbit_fill(void *data, double t, const double q[],
    returns  as trajectory_follow */
 int orbit_follow(orbit *, const row_times *, size_t columns, orbit_fill *,
                  void *data, bool quiet);
-/* The same of a reference, at times that are closer where it is fast until the end of the plan or its horizon.
+/* The same of a reference, until the end of the plan or its horizon, at times that
+   are closer where it is fast.
    returns  how many states it has */
 size_t orbit_follow_reference(orbit *, nevh_reference *, size_t columns,
                               orbit_fill *, void *data);

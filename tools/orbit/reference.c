@@ -117,11 +117,8 @@ static void note_end(int number) {
 
 /* Series may get ever shorter: then no part of the way ends. */
 static void stop_after(nevh_certain *orbit, double seconds) {
-    double whole = floor(fmin(seconds, 1e9));
-    struct itimerval timer = {
-        .it_value = {(time_t)whole, (suseconds_t)(1e6 * (seconds - whole))}};
     signal_catch(SIGPROF, note_end);
-    setitimer(ITIMER_PROF, &timer, NULL);
+    timer_start(ITIMER_PROF, seconds);
     nevh_certain_stop_at(orbit, &over);
 }
 
@@ -264,7 +261,7 @@ static int reference_of(const options *o, const plan *p) {
         stop_after(j.orbit, j.budget);
     if (!status)
         status = put_states(&j, result.table);
-    setitimer(ITIMER_PROF, &(struct itimerval){0}, NULL);
+    timer_start(ITIMER_PROF, 0);
     if (!status) {
         clear_progress(&j);
         put_notes(&j, &result);
