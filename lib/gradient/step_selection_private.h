@@ -40,12 +40,11 @@ typedef struct {
     const nevh_options *options;
     double *length; /* 2n */
     nevh__samples samples;
-    size_t lanes;   /* of them, given by the user: the first ones */
-    size_t at;      /* the one whose lengths are looked for */
-    bool shortened; /* a length, there */
-    const double
-        *sizes;        /* 2n: of the orbit, while lengths are found */
-    size_t neighbours; /* the first sample displaced at random */
+    size_t lanes;        /* of them, given by the user: the first ones */
+    size_t at;           /* the one whose lengths are looked for */
+    bool shortened;      /* a length, there */
+    const double *sizes; /* 2n: of the orbit, while lengths are found */
+    size_t neighbours;   /* the first sample displaced at random */
     bool scales_alone; /* no steps are tried: the pilot ends with the scales */
 } nevh__step_selection;
 
