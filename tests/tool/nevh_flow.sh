@@ -163,6 +163,11 @@ says 'no coordinate changes together with its momentum'
 exits 2 flow pendulum --set g=1e200
 says 'pendulum: the orbit fails, so that no shape follows from it: '
 
+# The default shape stays away from a singularity that the orbit passes by.
+exits 0 flow kepler-0.9 --integrators gauss4 --t-end 0.2 --samples 3 --format csv
+test "$(rows | wc -l)" -eq 3 || fails "has not 3 rows"
+holds '$9 == "ok" && abs($7 - 1) < 1e-6'
+
 # The default shape does not run away with the first integrator; what fails far out
 # names where.
 exits 0 flow pendulum --integrators euler --dt 0.1 --t-end 1

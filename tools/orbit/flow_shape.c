@@ -321,20 +321,24 @@ static int read_given(shape *c, const options *o, const char *text) {
     return status;
 }
 
-/* The extent of the scene's orbit in 1000 steps of the first scheme. */
+/* The extent of the scene's orbit in 1000 steps of the first scheme, and the
+   longest of these steps. */
 typedef struct {
     size_t n;
-    double *low, *high;
+    double *low, *high, *last, *longest; /* 2n each */
 } extent;
 
 static int widen(void *data, size_t step, double t, const double q[],
                  const double p[]) {
     extent *e = data;
-    (void)step, (void)t;
+    (void)t;
     for (size_t k = 0; k < 2 * e->n; k++) {
         double x = k < e->n ? q[k] : p[k - e->n];
         e->low[k] = fmin(e->low[k], x);
         e->high[k] = fmax(e->high[k], x);
+        if (step > 0)
+            e->longest[k] = fmax(e->longest[k], fabs(x - e->last[k]));
+        e->last[k] = x;
     }
     return 0;
 }
@@ -359,10 +363,7 @@ static nevh_stepper *plan_symplectic(const plan *p) {
 }
 
 /* As far as the orbit can be followed. */
-static int measure(const plan *p, extent *e) {
-    nevh_stepper *s = plan_symplectic(p);
-    if (!s)
-        return TOOL_USAGE;
+static int measure(const plan *p, nevh_stepper *s, extent *e) {
     double *q = plan_state(p), *m = q + p->n;
     nevh_observer observer = {widen, e, 1};
     int status =
@@ -374,8 +375,29 @@ static int measure(const plan *p, extent *e) {
     else
         status = TOOL_OK;
     free(q);
-    nevh_stepper_free(s);
     return status;
+}
+
+/* True if steps from points of the outline are at most 4 times as long as those
+   of the orbit: a shape around a singularity breaks at once. */
+static bool moves_as_the_orbit(const shape *c, nevh_stepper *s,
+                               const extent *e) {
+    enum { POINTS = 48 };
+    static const double most = 4;
+    const plan *p = c->plan;
+    double *from = tool_allocate(4 * p->n, sizeof *from), *to = from + 2 * p->n;
+    bool fits = true;
+    for (size_t i = 0; fits && i < POINTS; i++) {
+        const double at = (double)i / POINTS;
+        shape_curve((void *)c, 1, &at, from, from + p->n);
+        memcpy(to, from, 2 * p->n * sizeof *to);
+        fits = nevh_run(s, p->run->t_start, p->dt[0], 1, to, to + p->n, NULL,
+                        0) == NEVH_OK;
+        for (size_t k = 0; fits && k < 2 * p->n; k++)
+            fits = fabs(to[k] - from[k]) <= most * e->longest[k];
+    }
+    free(from);
+    return fits;
 }
 
 /* The length over which coordinate k moves: a turn at most, where it is an angle. */
@@ -385,43 +407,58 @@ static double range_of(const plan *p, const extent *e, size_t k) {
     return period > 0 ? fmin(range, period) : range;
 }
 
-/* A cat round the start, a fifth of the orbit in size. */
-static int choose(shape *c) {
+/* The first pair of a coordinate and its momentum that both change. */
+static int choose_plane(shape *c, const extent *e) {
     static const double part = 0.1;
     const plan *p = c->plan;
-    extent e = {p->n, tool_allocate(2 * p->n, sizeof(double)),
-                tool_allocate(2 * p->n, sizeof(double))};
+    for (c->k = 0; c->k < p->n; c->k++) {
+        c->width = part * range_of(p, e, c->k);
+        c->height = part * (e->high[p->n + c->k] - e->low[p->n + c->k]);
+        if (c->width > 0 && c->height > 0 && isfinite(c->width * c->height))
+            break;
+    }
+    if (c->k == p->n)
+        return tool_refuse("%s: %s: name a shape, as --shape 'disc(%s = 0, "
+                           "p_%s = 0, 0.1)'",
+                           p->name,
+                           moves(e) ? "along the orbit no coordinate changes "
+                                      "together with its momentum"
+                                    : "the orbit stays where it starts",
+                           nevh_scene_coordinate(p->scene, 0),
+                           nevh_scene_coordinate(p->scene, 0));
+    c->kind = FLOW_CAT;
+    c->x = p->q[c->k];
+    c->y = p->p[c->k];
+    return TOOL_OK;
+}
+
+/* A cat round the start, a fifth of the orbit in size, or less where points of
+   its outline move much faster. */
+static int choose(shape *c) {
+    enum { HALVINGS = 6 };
+    const plan *p = c->plan;
+    nevh_stepper *s = plan_symplectic(p);
+    if (!s)
+        return TOOL_USAGE;
+    double *room = tool_allocate(8 * p->n, sizeof *room);
+    extent e = {p->n, room, room + 2 * p->n, room + 4 * p->n, room + 6 * p->n};
     for (size_t k = 0; k < 2 * p->n; k++) {
         e.low[k] = INFINITY;
         e.high[k] = -INFINITY;
     }
-    int status = measure(p, &e);
-    size_t k = 0;
-    bool moved = moves(&e);
-    for (; !status && k < p->n; k++) {
-        c->width = part * range_of(p, &e, k);
-        c->height = part * (e.high[p->n + k] - e.low[p->n + k]);
-        if (c->width > 0 && c->height > 0 && isfinite(c->width * c->height))
-            break;
+    int status = measure(p, s, &e);
+    if (!status)
+        status = choose_plane(c, &e);
+    for (int i = 0; !status && i < HALVINGS && !moves_as_the_orbit(c, s, &e);
+         i++) {
+        c->width /= 2;
+        c->height /= 2;
     }
-    free(e.low);
-    free(e.high);
+    free(room);
+    nevh_stepper_free(s);
     if (status)
         return status;
-    if (k == p->n)
-        return tool_refuse("%s: %s: name a shape, as --shape 'disc(%s = 0, "
-                           "p_%s = 0, 0.1)'",
-                           p->name,
-                           moved ? "along the orbit no coordinate changes "
-                                   "together with its momentum"
-                                 : "the orbit stays where it starts",
-                           nevh_scene_coordinate(p->scene, 0),
-                           nevh_scene_coordinate(p->scene, 0));
-    const char *name = nevh_scene_coordinate(p->scene, k);
-    c->kind = FLOW_CAT;
-    c->k = k;
-    c->x = p->q[k];
-    c->y = p->p[k];
+    const char *name = nevh_scene_coordinate(p->scene, c->k);
     c->text = text_print("cat(%s = %.4g, p_%s = %.4g, %.3g, %.3g)", name, c->x,
                          name, c->y, c->width, c->height);
     return TOOL_OK;
