@@ -364,6 +364,10 @@ shows 'height'
 texts | grep -q '^distance (10.* km)$' || fails "does not show the distance"
 shows 'verlet, dt = 0.002 year; gradient central4; t = 0 ... 1 year'
 texts | grep -q 'but without moon' || fails "does not say what is off"
+# Elements of an array have the names of their bodies.
+draws run sun-earth-moon --plot-kind time --columns x[2],p_x[2] --plot $svg --t-end 1
+texts | grep -q '^x\[2\], Earth (AU)$' || { fails "does not name the Earth"; texts; }
+texts | grep -q '^p_x\[2\] (' || fails "names a momentum after a body"
 # What steps keep beside what they do not, of the schemes of which it is known.
 draws run pendulum --plot-kind time --t-end 5 --plot $svg --integrators verlet,rk4 \
     --columns energy_error,shadow_error --keep-plot-script $work/out.gp

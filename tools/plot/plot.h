@@ -92,7 +92,8 @@ void plot_point(plot *, size_t series, double x, double y);
 void plot_break(plot *, size_t series); /* the line ends */
 
 /* plot_words.c */
-/* "NAME (UNIT)", the unit being the scene's label of `of`, or, for a momentum
+/* "NAME (UNIT)", or "NAME, BODY (UNIT)" where [picture] names the body of a coordinate
+   of an array, the unit being the scene's label of `of`, or, for a momentum
    without one, what follows from those of energy, t and the coordinate; to be
    freed. */
 char *plot_label(const plan *, const char *name, const char *of);

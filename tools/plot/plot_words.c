@@ -45,9 +45,24 @@ static char *unit_of(const plan *p, const char *name) {
                                                  : momentum_unit(p, name + 2);
 }
 
+/* The name that [picture] gives the body of a coordinate of an array; "". */
+static const char *body_of(const plan *p, const char *coordinate) {
+    if (!strchr(coordinate, '['))
+        return "";
+    for (size_t i = 0; i < nevh_scene_part_count(p->scene); i++) {
+        nevh_scene_part part = nevh_scene_part_at(p->scene, i);
+        for (size_t k = 0; part.name && k < part.count; k++)
+            if (strcmp(part.item[k], coordinate) == 0)
+                return part.name;
+    }
+    return "";
+}
+
 char *plot_label(const plan *p, const char *name, const char *of) {
     char *unit = unit_of(p, of);
-    char *text = text_print(*unit ? "%s (%s)" : "%s%s", name, unit);
+    const char *body = body_of(p, name);
+    char *text = text_print(*unit ? "%s%s%s (%s)" : "%s%s%s%s", name,
+                            *body ? ", " : "", body, unit);
     free(unit);
     return text;
 }
