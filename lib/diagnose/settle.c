@@ -240,11 +240,12 @@ static nevh_verdict judge_driven(const nevh_energy_report *own,
     return doubtful ? NEVH_UNDECIDED : verdict;
 }
 
-/* beyond: the error is above the limit; carried: level relative to energies that were
-   met later; spared: it cannot be unstable. */
+/* beyond: the error is above the limit, and not that of a balance in which it adds up;
+   carried: level relative to energies that were met later; spared: it cannot be
+   unstable. */
 static nevh_verdict judge_size(nevh_verdict verdict, bool beyond, bool carried,
                                bool spared) {
-    if (beyond && verdict != NEVH_BOUNDED &&
+    if (beyond && verdict != NEVH_BOUNDED && verdict != NEVH_DRIFTS &&
         !(carried && verdict == NEVH_UNDECIDED))
         verdict = NEVH_UNSTABLE;
     return spared && verdict == NEVH_UNSTABLE ? NEVH_UNDECIDED : verdict;

@@ -68,6 +68,13 @@ static bool is_driven_there(const nevh_energy_report *r) {
            r->grown > some && r->relative[1] <= fmin(1, level * r->relative[0]);
 }
 
+/* True if the motion does not grow, but the energy that friction or a drive exchanges
+   with it adds up, and the error of the balance with it. */
+static bool adds_up(const nevh_energy_report *r) {
+    static const double some = 1.5;
+    return r->theory == NEVH_THEORY_OPEN && r->grown <= some && is_line(r);
+}
+
 /* An error that large comes back where the orbit is still of use. */
 static nevh_verdict judge_large(const nevh_energy_report *r, double times) {
     static const double hopeless = 1e6, much = 10;
@@ -80,6 +87,8 @@ static nevh_verdict judge_large(const nevh_energy_report *r, double times) {
     bool level = huge ? r->max <= 1.05 * r->early : is_flat(r, 1.25);
     if (returns && level)
         return NEVH_BOUNDED;
+    if (adds_up(r))
+        return NEVH_DRIFTS;
     return is_driven_there(r) ? NEVH_UNDECIDED : NEVH_UNSTABLE;
 }
 

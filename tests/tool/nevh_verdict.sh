@@ -323,4 +323,24 @@ exits 0 compare $work/quartic.nevh --integrators gauss4 --gradient exact
 tr '\n' ' ' <$work/out | tr -s ' ' >$work/all
 grep -q 'keeps the energy bounded' $work/all && grep -q 'grows past every energy the system started with when' $work/all &&
     fails "is bounded and exceeds"
+
+# Errors of a balance add up, which is a drift while the motion does not grow: verlet
+# loses 5 times H at the start, on the attractor.  Motion that grows is unstable.
+cat >$work/duffing.nevh <<'END'
+[coordinates]
+x = 0.1, 0
+[effects]
+kinetic = p_x^2/2
+well = x^4/4 - x^2/2
+drive = -0.3*cos(t)*x
+[friction]
+drag = x: 0.25
+[run]
+t_end = 1885
+dt = 0.1
+END
+compares $work/duffing.nevh --integrators verlet,gauss4,rk4
+verdicts verlet=drifts gauss4=drifts rk4=drifts
+compares $work/duffing.nevh --integrators euler
+verdicts euler=unstable
 exit $status
