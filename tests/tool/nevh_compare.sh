@@ -289,6 +289,34 @@ has '^With gravity the run stops at t = 0\.7\.$'
 exits 0 check $work/stop.nevh
 has 'Highest frequency: omega = (2\.[89][0-9]?|3\.0[0-6]?) '
 
+# The energy scale is that of the motion until it stops: 60 J of a ball that would fall
+# to 149 kJ.
+cat >$work/ball.nevh <<'END'
+[parameters]
+m = 0.145
+[coordinates]
+x = 0
+y = 1.5
+v_x = 20
+v_y = 20
+[effects]
+kinetic = (p_x^2 + p_y^2)/(2*m)
+gravity = m*9.81*y
+[friction]
+air = all: 0.2
+[picture]
+bob = x, y
+[run]
+t_end = 10
+dt = 0.1
+stop = y < 0
+END
+exits 0 compare $work/ball.nevh --integrators verlet
+has '^energy_scale: 60\.1'
+sed '/^stop/d' $work/ball.nevh >$work/falls.nevh
+exits 0 compare $work/falls.nevh --integrators verlet
+has '^energy_scale: [0-9]{5}'
+
 # Several gradients: verdicts that are alike are said once, others name theirs.
 exits 0 compare pendulum --integrators verlet,rk4 --gradient central2,exact \
     --dt 0.5,0.1 --t-end 200

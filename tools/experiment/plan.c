@@ -325,7 +325,26 @@ double plan_period(const plan *p, const char *shown) {
     return 0;
 }
 
-/* The energy scale after one observation, which may leave it unknown. */
+/* The largest energy of an effect until the scene's `stop` ends the run of the first
+   scheme that fits; INFINITY: it does not. */
+static double largest_until_stop(const plan *p) {
+    const nevh_options as = {.portable = p->portable};
+    if (!nevh_scene_stops(p->scene) || !p->dts)
+        return INFINITY;
+    nevh_stepper *s = plan_first(p, NULL);
+    nevh_energy *e = nevh_energy_new(p->system, &as);
+    nevh_observer watch = {nevh_energy_observe, e, 1};
+    double stopped = NAN;
+    if (s)
+        plan_run(p, s, p->dt[0], &watch, 1, &stopped);
+    nevh_energy_report run = nevh_energy_result(e, 0);
+    nevh_energy_free(e);
+    nevh_stepper_free(s);
+    return isfinite(stopped) ? run.met * run.scale : INFINITY;
+}
+
+/* The energy scale after one observation, which may leave it unknown.  It may be that
+   of a motion that outlasts the run, but not of one that goes on beyond its `stop`. */
 static double scale_of_start(const plan *p, bool *known) {
     const nevh_options as = {.portable = p->portable};
     nevh_energy *e = nevh_energy_new(p->system, &as);
@@ -333,7 +352,10 @@ static double scale_of_start(const plan *p, bool *known) {
     nevh_energy_report start = nevh_energy_result(e, 0);
     nevh_energy_free(e);
     *known = start.scale > 0 && (start.scale != 1 || start.met > 0);
-    return start.scale;
+    double scale = start.scale, own = fabs(start.initial);
+    return scale > own * (1 + 1e-9) && own > 0
+               ? fmin(scale, fmax(own, largest_until_stop(p)))
+               : scale;
 }
 
 double plan_energy_scale(const plan *p) {
