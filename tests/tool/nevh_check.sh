@@ -187,6 +187,12 @@ lacks 'not conserved'
 # Parts are told of forces that are finite: B is empty in Kepler's problem, and not at
 # the edge of the domain of a root.
 has '^# +B is 0: steps of any length are exact'
+printf '[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = x^2/2\n[friction]\nf = all: 0.1\n%s\n' \
+    '[run]
+t_end = 9
+dt = 0.1' >$work/slows.nevh
+exits 0 check $work/slows.nevh --format csv
+has '^# +B is 0, but there is friction: order 2'
 for jump in '0.3*floor(x)' 'mod(x, 1)' '0.3*floor(x^2)' 'floor(abs(x))'; do
     printf '[coordinates]\nx = 0.3\np_x = 1\n[effects]\nK = p_x^2/2\nV = %s\n[run]\nt_end = 9\n' \
         "$jump" >$work/jump.nevh

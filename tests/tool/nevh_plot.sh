@@ -635,6 +635,19 @@ awk '/^\$series/ { n++; most = 0 } /^EOD/ { if (n == 3) peak = most }
     NF == 2 && $1 > 1 && $2 > most { most = $2 }
     END { exit !(peak > 14.1) }' $work/out.gp || fails "cuts the peaks of the reference"
 
+# It begins with short steps, too, where the run is of hundreds of periods, and it ends
+# where the scene's stop says.
+printf '%s\n' '[coordinates]' 'x = -0.3' '[effects]' 'kinetic = p_x^2/2' \
+    'morse = 4.6*(1 - exp(-1.9*x))^2' '[run]' 't_end = 300' 'dt = 0.05' >$work/morse.nevh
+draws run $work/morse.nevh --integrators gauss4 --plot $svg --keep-plot-script $work/out.gp
+awk '/^\$series/ { n = 0 } /^-?[0-9]/ && n++ == 1 && ($2 > 0.5 || $2 < -0.5) { exit 1 }' \
+    $work/out.gp || fails "begins with a chord"
+printf '%s\n' '[coordinates]' 'y = 1.5' 'v_y = 20' '[effects]' 'kinetic = p_y^2/2' \
+    'gravity = 9.81*y' '[run]' 't_end = 10' 'dt = 0.1' 'stop = y < 0' >$work/ball.nevh
+draws run $work/ball.nevh --integrators gauss4 --plot-kind time --columns y --plot $svg \
+    --keep-plot-script $work/out.gp
+awk 'NF == 2 && $2 < -2 { exit 1 }' $work/out.gp || fails "goes on after the stop"
+
 # An energy that changes with the time or friction is labelled so; momenta have units.
 draws run damped-driven-pendulum --plot-kind time --plot $svg --t-end 20
 shows 'energy, not conserved'

@@ -70,8 +70,10 @@ static void name_parts(const plan *p, list *fast, list *slow) {
     }
 }
 
-static void size_words(double ratio, bool empty, list *notes) {
-    if (ratio == 0)
+static void size_words(const plan *p, double ratio, bool empty, list *notes) {
+    if (ratio == 0 && empty && p->friction)
+        list_add(notes, "  B is 0, but there is friction: order 2");
+    else if (ratio == 0)
         list_add(notes, empty ? "  B is 0: steps of any length are exact"
                               : "  forces of B are 0 at all states that were "
                                 "tried on the orbit");
@@ -91,7 +93,7 @@ static void all_words(const plan *p, double ratio, list *notes) {
                "Parts of H = A + B for schemes by parts: A, whose flow is "
                "exact: %s; B, which kicks: %s",
                a, *b ? b : "nothing");
-    size_words(ratio, !*b, notes);
+    size_words(p, ratio, !*b, notes);
     free(a);
     free(b);
     list_free(&fast);

@@ -206,6 +206,14 @@ static void draw_shape(plot *to, const flow_job *j, const flow_row *r,
                          shift, w);
 }
 
+/* Digits after the point that tell a ratio from 1: four of its own, or two of the
+   difference. */
+static int digits_from_1(double ratio) {
+    double apart = fabs(ratio - 1);
+    int own = (int)fmin(fmax(3 - floor(log10(fabs(ratio) + 1e-9)), 0), 9);
+    return apart > 0 ? (int)fmin(fmax(own, 1 - floor(log10(apart))), 12) : own;
+}
+
 /* The change of the area by the scheme, as far as that is known. */
 static char *area_words(const flow_job *j, const flow_row *r) {
     static const double nothing = 5e-7;
@@ -224,18 +232,21 @@ static char *area_words(const flow_job *j, const flow_row *r) {
            : worst < nothing
                ? text_print("%s kept until t = %.4g%s", area, last.t,
                             j->plan.unit)
-               : text_print("%s \303\227 %.4g until t = %.4g%s", area,
-                            last.area / first, last.t, j->plan.unit);
+               : text_print("%s \303\227 %.*f until t = %.4g%s", area,
+                            digits_from_1(last.area / first), last.area / first,
+                            last.t, j->plan.unit);
 }
 
 static char *heading_of(const flow_job *j, const flow_row *r, bool outside) {
     char *area = area_words(j, r), *dt = NULL;
+    bool whole = !isnan(nevh_loop_result(r->loop, j->times - 1).area),
+         any = !isnan(nevh_loop_result(r->loop, 1).area);
     if (j->rows > 1 && j->row[0].dt != j->row[j->rows - 1].dt)
         dt = text_print(", dt = %.4g%s", r->dt, j->plan.unit);
-    char *text = text_print(
-        "%s%s: %s%s", r->integrator, dt ? dt : "",
-        isnan(nevh_loop_result(r->loop, j->times - 1).area) ? "failed" : area,
-        outside ? ", outside" : "");
+    char *text = text_print("%s%s: %s%s%s", r->integrator, dt ? dt : "",
+                            whole || any ? area : "failed",
+                            any && !whole ? ", then failed" : "",
+                            outside ? ", outside" : "");
     free(area);
     free(dt);
     return text;

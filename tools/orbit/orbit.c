@@ -125,11 +125,13 @@ static double relative_change(size_t count, const double y[], double last[],
     return most;
 }
 
-/* Times are the closer the faster a variable changes. */
+/* Times are the closer the faster a variable changes, from a short one on: of the
+   range nothing is known before.  They end where the scene's `stop` says. */
 size_t orbit_follow_reference(orbit *o, nevh_reference *r, size_t columns,
                               orbit_fill *fill, void *data) {
     enum { MOST = THINNED_ROWS - 1, FEWEST = 4000 };
-    static const double change = 0.01, most_growth = 1.5, least = 0.1;
+    static const double change = 0.01, most_growth = 1.5, least = 0.1,
+                        first = 1e-3;
     size_t n = o->plan.n, count = 2 * n;
     filler f = {o, fill, data};
     double *y = tool_allocate(4 * count, sizeof *y), *last = y + count;
@@ -138,18 +140,21 @@ size_t orbit_follow_reference(orbit *o, nevh_reference *r, size_t columns,
     double span = o->plan.t_end - begin,
            until = nevh_reference_horizon(r) - begin;
     span = fabs(until) < fabs(span) ? until : span;
+    stop ends = {.scene = o->plan.scene};
+    size_t stops = nevh_scene_stops(o->plan.scene);
     forget(o);
     o->rows = thinned_new(columns + 1);
     o->q = tool_allocate(n, sizeof *o->q);
     o->p = tool_allocate(n, sizeof *o->p);
-    for (double part = 0, step = 1. / FEWEST;;) {
+    for (double part = 0, step = first / FEWEST;;) {
         if (tool_status(nevh_reference_state_after(r, part * span, y, y + n)))
             break;
         if (part == 0)
             for (size_t k = 0; k < count; k++)
                 low[k] = high[k] = last[k] = y[k];
         take(&f, begin + part * span, y, y + n);
-        if (part == 1 || o->rows.count == MOST)
+        if (part == 1 || o->rows.count == MOST ||
+            (stops && stop_observe(&ends, 0, o->t, y, y + n)))
             break;
         double moved = relative_change(count, y, last, low, high);
         step *= fmax(least, fmin(most_growth, change / moved));

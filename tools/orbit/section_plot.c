@@ -65,9 +65,9 @@ static size_t new_series(plot *to, const char *name, plot_form form,
 }
 
 /* "swing: phi1 = 0, rising"; to be freed. */
-static char *plane_of(const nevh_scene_section *decl) {
+static char *plane_of(const plan *p, const nevh_scene_section *decl) {
     if (decl->every > 0)
-        return text_print("%s: every %.6g", decl->name, decl->every);
+        return text_print("%s: every %.6g%s", decl->name, decl->every, p->unit);
     return text_print("%s: %s = %s%s", decl->name, decl->left, decl->right,
                       decl->direction > 0   ? ", rising"
                       : decl->direction < 0 ? ", falling"
@@ -77,7 +77,7 @@ static char *plane_of(const nevh_scene_section *decl) {
 static void add_panel(plot **to, const plan *p, const nevh_scene_section *decl,
                       size_t points, const char *across, const char *up,
                       const char *own) {
-    char *plane = plane_of(decl);
+    char *plane = plane_of(p, decl);
     char *heading =
         text_print(points ? "%s" : "%s; no points", own ? own : plane);
     free(plane);
