@@ -26,9 +26,11 @@ _superscripts = str.maketrans("\u207a\u207b\u2070\u00b9\u00b2\u00b3" + "".join(
     map(chr, range(0x2074, 0x207a))), "+-0123456789")
 _dashes = str.maketrans(dict.fromkeys("\u2010\u2011\u2012\u2013\u2014\u2212", "-"))
 _units = {  # the units of answers, and what people write for them
-    "s": {"ms": 1e-3, "\u03bcs": 1e-6, "us": 1e-6, "min": 60, "minutes": 60, "h": 3600},
+    "s": {"ms": 1e-3, "ks": 1e3, "\u03bcs": 1e-6, "us": 1e-6, "min": 60, "minutes": 60, "h": 3600},
     "rad": {"mrad": 1e-3, **dict.fromkeys(("\u00b0", "deg", "degree", "degrees", "grad"),
                                          math.pi/180)},
+    "rad/s": {"hz": 2*math.pi, "hertz": 2*math.pi, "krad/s": 1e3, "\u00b0/s": math.pi/180,
+              "deg/s": math.pi/180},
     "%": {}, "": {}, "1/s": {}}
 _shares = {"%": 0.01, "percent": 0.01, "per cent": 0.01, "\u2030": 1e-3}
 _months = ("jan|feb|m[a\u00e4]r|apr|ma[iy]|jun|jul|aug|sep|o[ck]t|nov|de[cz]")

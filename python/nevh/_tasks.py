@@ -282,7 +282,7 @@ class Answer:
             return "unreadable", typed.why
         if self.is_right(typed):
             return "right", ""
-        if abs(typed.number - self.number) <= self.task.around(self.number) + typed.unit:
+        if abs(typed.number - self.number) <= self.task.around(self.number) + typed.unit/2:
             return "wrong", "too few digits: %d %s are asked for" % (self.task.digits,
                                                                    self.task.kind)
         for said, number in self.mistakes():
