@@ -98,7 +98,8 @@ static void draw_members(plot *to, const column *x, const column *y,
     size_t series = 0, members = x->points ? member[x->points - 1] + 1 : 0;
     for (size_t k = 0; k < x->points; k++) {
         for (size_t i = k ? member[k - 1] + 1 : 0; i <= member[k]; i++) {
-            series = plot_series(to, names ? names->item[i] : NULL);
+            bool any = i == member[k]; /* others have no point, nor a name */
+            series = plot_series(to, names && any ? names->item[i] : NULL);
             plot_member(to, series, i, members);
         }
         plot_point(to, series, value(x, k), value(y, k));

@@ -174,7 +174,7 @@ void plot_set_look(plot *p, size_t number, size_t look) {
     p->series[number].look = look;
 }
 
-enum { COLOURS = 8 }; /* see looks.h */
+enum { COLOURS = 8, BLACK = 4 }; /* see looks.h */
 
 void plot_dash_apart(plot *p, size_t number) {
     size_t dash = 0;
@@ -205,7 +205,8 @@ void plot_member(plot *p, size_t number, size_t member, size_t members) {
     bool many = members > MARKS * COLOURS; /* rings would hide each other */
     double share = many ? (double)(MARKS * COLOURS) / (double)members : 1;
     bool ring = !many && member / COLOURS % 2;
-    plot_set_look(p, number, member % COLOURS);
+    bool skips = members < COLOURS && member >= BLACK; /* the separatrix */
+    plot_set_look(p, number, member % COLOURS + skips);
     plot_style(p, number, ring ? PLOT_RINGS : PLOT_DOTS);
     plot_size(p, number, fmax(least, usual * sqrt(share)));
 }
