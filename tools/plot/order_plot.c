@@ -29,6 +29,12 @@ static const struct {
                     {state_error, "largest state error, relative"},
                     {observable_error, "largest error of the observable"}};
 
+static const char *label_of(const plan *p, size_t kind) {
+    return errors[kind].of == energy_error && p->balance
+               ? "largest error of the balance, relative"
+               : errors[kind].label;
+}
+
 /* The points of one scheme, by rising x: dt, or the end of the run. */
 typedef struct {
     size_t count, from, to; /* from, to: of the slope */
@@ -266,9 +272,9 @@ int order_plot(const options *o, const plan *p, const row rows[], size_t count,
     char *x = plot_label(p, axis == ORDER_DT ? "dt" : "end of the run", "t");
     for (size_t k = 0; k < panels; k++) {
         if (to)
-            plot_panel(to, NULL, x, errors[kinds[k]].label);
+            plot_panel(to, NULL, x, label_of(p, kinds[k]));
         else
-            to = plot_new(p->title, x, errors[kinds[k]].label);
+            to = plot_new(p->title, x, label_of(p, kinds[k]));
         plot_log(to, true, true);
         draw_panel(to, p, &d, kinds, panels, k);
     }

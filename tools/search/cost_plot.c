@@ -129,22 +129,26 @@ static bool all_have(const costs *c, work_of *count) {
 }
 
 static void add_note(const drawing *d) {
+    const plan *p = &d->costs->search.plan;
     char *text = text_print(
-        "%s%s",
-        d->costs->search.plan.by_state
-            ? "errors relative to the range of each variable"
-            : "errors relative to the scale of the energy",
+        "%s%s%s",
+        p->by_state ? "errors relative to the range of each variable"
+                    : "errors relative to the scale of the energy",
+        p->friction && !p->by_state
+            ? "; friction around a step is exact in the balance, though not in "
+              "the orbit: --by state"
+            : "",
         d->left_out ? "; steps that cost no less than shorter ones are left out"
                     : "");
-    plot_note_run(d->to, &d->costs->search.plan, NULL, text);
+    plot_note_run(d->to, p, NULL, text);
     free(text);
 }
 
 int cost_plot(const options *o, const costs *c) {
     const plan *p = &c->search.plan;
-    const char *error = c->search.plan.by_state
-                            ? "largest state error, relative"
-                            : "largest energy error, relative";
+    const char *error = p->by_state  ? "largest state error, relative"
+                        : p->balance ? "largest error of the balance, relative"
+                                     : "largest energy error, relative";
     bool h = all_have(c, values);
     drawing d = {c, plot_new(p->title, "CPU time (ms)", error), NULL, 0};
     d.work = milliseconds;
