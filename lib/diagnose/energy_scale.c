@@ -86,11 +86,15 @@ static bool loses_energy(motion *m) {
         m->h = h;
         m->size = size;
     }
-    static const double part =
-        0.1; /* of all terms: more than a scheme's error */
+    /* More than a scheme's error, of all terms; it is larger after the growth from a
+       start near a saddle, of which no step is looked at. */
+    static const double part = 0.1, of_growth = 0.5;
+    bool first = m->count == 1;
     double most = m->count ? fmax(m->size, m->energy[m->count - 1]) : size;
-    m->lost =
-        m->lost || (m->constant && fabs(h - m->h) > fmax(most, part * size));
+    double allowed = fmax(most, (first ? of_growth : part) * size);
+    m->lost = m->lost || (m->constant && fabs(h - m->h) > allowed);
+    if (first && !m->lost)
+        m->h = h;
     return m->lost;
 }
 

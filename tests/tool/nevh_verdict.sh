@@ -343,4 +343,14 @@ compares $work/duffing.nevh --integrators verlet,gauss4,rk4
 verdicts verlet=drifts gauss4=drifts rk4=drifts
 compares $work/duffing.nevh --integrators euler
 verdicts euler=unstable
+
+# A start near a saddle, where H is small by chance: errors are relative to the energies
+# of the motion, 0.26.
+for start in '1e-4 1e-3' '1e-6 1e-3' '1e-3 0' '1e-8 1e-6'; do
+    scene "x = ${start#* }\np_x = ${start% *}" 'K = p_x^2/2\nV = x^4/4 - x^2/2' \
+        't_end = 100\ndt = 0.1' saddle
+    compares $work/saddle.nevh --integrators verlet,rk4
+    verdicts verlet=bounded 'rk4=(drifts|undecided)'
+    has '^# energy_scale: 0\.2[56]'
+done
 exit $status
