@@ -240,7 +240,8 @@ static nevh_verdict judge_driven(const nevh_energy_report *own,
     return doubtful ? NEVH_UNDECIDED : verdict;
 }
 
-/* beyond: the error is above the limit, and not that of a balance in which it adds up;
+/* A drift may be beyond the limit: that of a balance, whose error adds up.
+   beyond: the error is above the limit;
    carried: level relative to energies that were met later; spared: it cannot be
    unstable. */
 static nevh_verdict judge_size(nevh_verdict verdict, bool beyond, bool carried,

@@ -304,8 +304,6 @@ kinetic = (p_x^2 + p_y^2)/(2*m)
 gravity = m*9.81*y
 [friction]
 air = all: 0.2
-[picture]
-bob = x, y
 [run]
 t_end = 10
 dt = 0.1

@@ -168,6 +168,31 @@ exits 0 flow kepler-0.9 --integrators gauss4 --t-end 0.2 --samples 3 --format cs
 test "$(rows | wc -l)" -eq 3 || fails "has not 3 rows"
 holds '$9 == "ok" && abs($7 - 1) < 1e-6'
 
+# Titles: as many digits of a ratio as tell it from 1, and what has failed.
+exits 0 flow pendulum --integrators rk4 --dt 0.05 --t-end 10 --plot $work/flow.svg \
+    --keep-plot-script $work/script
+grep -q '^set title "rk4: area × 0\.999975 until t = 10 s"' $work/script ||
+    { fails "has another title"; grep '^set title' $work/script; }
+cat >$work/cr3bp.nevh <<'END'
+[parameters]
+mu = 0.01215
+[coordinates]
+x = 0.6
+y = 0
+v_y = 0.6
+[effects]
+rotating = (p_x^2 + p_y^2)/2 + y*p_x - x*p_y
+earth = -(1 - mu)/hypot(x + mu, y)
+moon = -mu/hypot(x - 1 + mu, y)
+[run]
+t_end = 20
+dt = 0.01
+integrators = gauss4
+END
+exits 1 flow $work/cr3bp.nevh --plot $work/flow.svg --keep-plot-script $work/script
+grep -q '^set title "gauss4: sum of areas kept until t = 1, then failed"' $work/script ||
+    { fails "has another title"; grep '^set title' $work/script; }
+
 # The default shape does not run away with the first integrator; what fails far out
 # names where.
 exits 0 flow pendulum --integrators euler --dt 0.1 --t-end 1

@@ -54,6 +54,16 @@ all_right() { # FILE [OPTION...]
 }
 printf 'name,task,answer\nJosé Núñez,8.1,%s\nAda Lovelace,8.1,%s\n' $one $two >$work/plain.csv
 all_right $work/plain.csv
+# Too few digits are of a right answer, not of any short one.
+awk -v x=$one 'BEGIN { printf "%.2g", x }' >$work/short
+awk -v x=$one 'BEGIN { printf "%.2g", x*1.4 }' >$work/false
+for answer in short false; do
+    printf 'name,task,answer\nJosé Núñez,8.1,%s\n' $(cat $work/$answer) >$work/$answer.csv
+    exits 0 mark $work/$answer.csv --key 7
+    cp $work/out $work/$answer.out
+done
+grep -q 'too few digits' $work/short.out || { fails "does not say why"; cat $work/short.out; }
+grep -q 'too few digits' $work/false.out && fails "says that a false answer has too few digits"
 { printf '\357\273\277'; sed 's/$/\r/' $work/plain.csv; } >$work/bom.csv
 all_right $work/bom.csv
 printf 'sep=;\r\nName;Task;Answer;\r\nJosé Núñez;Task 8.1;%s;\r\nAda Lovelace;8,1;%s;;\r\n' $comma $two >$work/semicolon.csv

@@ -131,6 +131,16 @@ test "$(grep -c '^\$series' $work/out.gp)" = 16 || fails "has not 16 series"
 test "$(sed -n 's/.* with points \(linetype [0-9]* pointtype [0-9]*\) .*/\1/p' $work/out.gp |
     sort -u | wc -l)" = 16 || fails "has not 16 looks"
 for y in -0.4 0 0.2 0.6; do shows "start y = $y"; done
+# Few starts: none in the black of a separatrix, and no name of one without a point.
+printf '%s\n' '[coordinates]' 'x = 1' '[effects]' 'kinetic = p_x^2/2' \
+    'well = x^4/4 - x^2/2' '[sections]' 'middle = when x = 0, rising: t, p_x' '[run]' \
+    't_end = 60' 'dt = 0.1' 'integrators = verlet' >$work/well.nevh
+draws section $work/well.nevh --vary 'p_x = 1.1, 1.2, 0.1, 1.3, 1.4, 1.5, 1.6' --plot $svg \
+    --keep-plot-script $work/out.gp
+test "$(texts | grep -c '^start p_x = ')" = 6 || fails "names starts without points"
+texts | grep -q '^start p_x = 0\.1$' && fails "names a start without a point"
+grep -q 'with points linetype 6' $work/out.gp || fails "draws no fifth start"
+grep -q 'with points linetype 5' $work/out.gp && fails "draws a start in black"
 draws portrait henon-heiles --integrators verlet,rk4 --t-end 60 --plot $svg
 test "$(texts | grep -c '^start y = ')" = 16 || fails "has other starts in another panel"
 # One degree of freedom: what crosses is 0 at all points, so time is across.
@@ -218,6 +228,7 @@ shows 'order 4'
 for k in 1 2 3 4 5 6; do
     test "$(points $k)" = 3 || fails "does not draw the series $k"
 done
+texts | grep -q 'left out' && fails "leaves out steps that evaluate less"
 awk '/^\$series/ { panel = $1 > "$series3" } NF == 2 && /^[0-9]/ {
         if (!low[panel] || $1 < low[panel]) low[panel] = $1 }
     /^set xrange/ { sub(/.*\[/, ""); begin = $0 + 0; x = low[n++]

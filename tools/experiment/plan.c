@@ -326,11 +326,16 @@ double plan_period(const plan *p, const char *shown) {
 }
 
 /* The largest energy of an effect until the scene's `stop` ends the run of the first
-   scheme that fits; INFINITY: it does not. */
-static double largest_until_stop(const plan *p) {
-    const nevh_options as = {.portable = p->portable};
-    if (!nevh_scene_stops(p->scene) || !p->dts)
+   scheme that fits; INFINITY: not in its first 100 000 steps. */
+static double largest_until_stop(const plan *whole) {
+    static const double most = 1e5;
+    const nevh_options as = {.portable = whole->portable};
+    if (!nevh_scene_stops(whole->scene) || !whole->dts)
         return INFINITY;
+    plan begin = *whole, *p = &begin;
+    double span = p->t_end - p->run->t_start;
+    p->t_end = p->run->t_start +
+               copysign(fmin(fabs(span), most * fabs(p->dt[0])), span);
     nevh_stepper *s = plan_first(p, NULL);
     nevh_energy *e = nevh_energy_new(p->system, &as);
     nevh_observer watch = {nevh_energy_observe, e, 1};

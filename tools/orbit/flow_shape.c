@@ -380,8 +380,7 @@ static int measure(const plan *p, nevh_stepper *s, extent *e) {
 
 /* True if steps from points of the outline are at most 4 times as long as those
    of the orbit: a shape around a singularity breaks at once. */
-static bool moves_as_the_orbit(const shape *c, nevh_stepper *s,
-                               const extent *e) {
+static bool moves_as_the_orbit(shape *c, nevh_stepper *s, const extent *e) {
     enum { POINTS = 48 };
     static const double most = 4;
     const plan *p = c->plan;
@@ -389,7 +388,7 @@ static bool moves_as_the_orbit(const shape *c, nevh_stepper *s,
     bool fits = true;
     for (size_t i = 0; fits && i < POINTS; i++) {
         const double at = (double)i / POINTS;
-        shape_curve((void *)c, 1, &at, from, from + p->n);
+        shape_curve(c, 1, &at, from, from + p->n);
         memcpy(to, from, 2 * p->n * sizeof *to);
         fits = nevh_run(s, p->run->t_start, p->dt[0], 1, to, to + p->n, NULL,
                         0) == NEVH_OK;

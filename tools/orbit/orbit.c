@@ -141,7 +141,7 @@ size_t orbit_follow_reference(orbit *o, nevh_reference *r, size_t columns,
            until = nevh_reference_horizon(r) - begin;
     span = fabs(until) < fabs(span) ? until : span;
     stop ends = {.scene = o->plan.scene};
-    size_t stops = nevh_scene_stops(o->plan.scene);
+    bool stops = nevh_scene_stops(o->plan.scene);
     forget(o);
     o->rows = thinned_new(columns + 1);
     o->q = tool_allocate(n, sizeof *o->q);

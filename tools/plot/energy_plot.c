@@ -23,6 +23,11 @@ static const char *quantity(const plan *p) {
                         : "|energy error|, relative";
 }
 
+const char *energy_plot_largest(const plan *p) {
+    return p->balance ? "largest error of the balance, relative"
+                      : "largest energy error, relative";
+}
+
 char *energy_plot_words(const plan *p) {
     const char *time = nevh_scene_label(p->scene, "t");
     double bin = (p->t_end - p->run->t_start) / MOST_POINTS;

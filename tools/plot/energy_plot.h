@@ -11,6 +11,8 @@ plot *energy_plot_new(const plan *, const char *title, const char *heading);
 void energy_plot_panel(plot *, const plan *, const char *heading);
 /* The scale of the errors, and the steps per point, in words; to be freed. */
 char *energy_plot_words(const plan *);
+/* The name of an axis of largest errors. */
+const char *energy_plot_largest(const plan *);
 /* A line in the current panel; name: NULL is none. */
 void energy_plot_add(plot *, const char *name, const char *integrator,
                      const envelope *);

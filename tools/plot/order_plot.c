@@ -2,6 +2,7 @@
    --against length: against the length of the run.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "order_plot.h"
+#include "energy_plot.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,15 +25,13 @@ static double observable_error(const row *r) {
 enum { ERRORS = 3 };
 static const struct {
     error_of *of;
-    const char *label;
-} errors[ERRORS] = {{energy_error, "largest energy error, relative"},
+    const char *label; /* NULL: as the plan says */
+} errors[ERRORS] = {{energy_error, NULL},
                     {state_error, "largest state error, relative"},
                     {observable_error, "largest error of the observable"}};
 
 static const char *label_of(const plan *p, size_t kind) {
-    return errors[kind].of == energy_error && p->balance
-               ? "largest error of the balance, relative"
-               : errors[kind].label;
+    return errors[kind].label ? errors[kind].label : energy_plot_largest(p);
 }
 
 /* The points of one scheme, by rising x: dt, or the end of the run. */

@@ -1,7 +1,7 @@
 /* nevh cost --plot: errors against time, and against evaluations.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cost_private.h"
-#include "plot/plot.h"
+#include "plot/energy_plot.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -30,17 +30,12 @@ static double error_of(const study *l, size_t k) {
     return study_error(&l->level[k]);
 }
 
-/* The time where that is shown; what schemes evaluate else. */
-static double price(const drawing *d, const row *r) {
-    return d->work == milliseconds ? milliseconds(r) : r->work;
-}
-
-/* True if a shorter step costs no more and errs less: steps may be so long that
-   solving their equations takes more work than they save, and times are measured. */
-static bool is_outdone(const drawing *d, const study *l, size_t k) {
+/* True if a shorter step evaluates no more and errs less: steps may be so long that
+   solving their equations takes more work than they save.  Times decide nothing: those
+   of short runs differ from one to the next. */
+static bool is_outdone(const study *l, size_t k) {
     for (size_t i = k + 1; i < l->count; i++)
-        if (d->work(&l->level[i]) > 0 &&
-            price(d, &l->level[i]) <= price(d, &l->level[k]) &&
+        if (l->level[i].work > 0 && l->level[i].work <= l->level[k].work &&
             error_of(l, i) <= error_of(l, k))
             return true;
     return false;
@@ -49,7 +44,7 @@ static bool is_outdone(const drawing *d, const study *l, size_t k) {
 /* Without a break where there was no time to measure it. */
 static bool is_drawn(const drawing *d, const study *l, size_t k) {
     return isfinite(error_of(l, k)) && d->work(&l->level[k]) > 0 &&
-           !is_outdone(d, l, k);
+           !is_outdone(l, k);
 }
 
 static void draw_study(drawing *d, const study *l) {
@@ -63,7 +58,7 @@ static void draw_study(drawing *d, const study *l) {
         if (is_drawn(d, l, k))
             plot_point(d->to, series, d->work(&l->level[k]), error_of(l, k));
         else
-            d->left_out += isfinite(error_of(l, k)) && is_outdone(d, l, k);
+            d->left_out += isfinite(error_of(l, k)) && is_outdone(l, k);
     free(name);
 }
 
@@ -134,10 +129,8 @@ static void add_note(const drawing *d) {
         "%s%s%s",
         p->by_state ? "errors relative to the range of each variable"
                     : "errors relative to the scale of the energy",
-        p->friction && !p->by_state
-            ? "; friction around a step is exact in the balance, though not in "
-              "the orbit: --by state"
-            : "",
+        p->friction && !p->by_state ? "; friction " FRICTION_IS ": --by state"
+                                    : "",
         d->left_out ? "; steps that cost no less than shorter ones are left out"
                     : "");
     plot_note_run(d->to, p, NULL, text);
@@ -146,9 +139,8 @@ static void add_note(const drawing *d) {
 
 int cost_plot(const options *o, const costs *c) {
     const plan *p = &c->search.plan;
-    const char *error = p->by_state  ? "largest state error, relative"
-                        : p->balance ? "largest error of the balance, relative"
-                                     : "largest energy error, relative";
+    const char *error =
+        p->by_state ? "largest state error, relative" : energy_plot_largest(p);
     bool h = all_have(c, values);
     drawing d = {c, plot_new(p->title, "CPU time (ms)", error), NULL, 0};
     d.work = milliseconds;

@@ -6,6 +6,9 @@
 #include "study.h"
 
 enum { COST_TARGETS = 6 };
+/* Said of friction, in the words and the picture. */
+#define FRICTION_IS                                                            \
+    "around a step is exact in the balance, though not in the orbit"
 extern const double cost_target[COST_TARGETS];
 
 typedef struct {

@@ -363,8 +363,7 @@ void cost_words(costs *c, list *words) {
         "no ranking; use --by state.",
         conserves_energy);
     if (c->search.plan.friction && !c->search.plan.by_state)
-        list_add(words, "Friction around a step is exact in the balance, "
-                        "though not in the orbit: compare --by state.");
+        list_add(words, "Friction " FRICTION_IS ": compare --by state.");
     name_words(c, words, "a series counts as one evaluation.", has_series);
     name_words(c, words, "exact steps of parts are not counted as evaluations.",
                has_parts);
