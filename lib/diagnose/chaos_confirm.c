@@ -100,10 +100,13 @@ static nevh_chaos *finer_chaos(const nevh_chaos *c, const nevh_finer *f) {
                                          .differences = !c->tangent});
 }
 
-/* A finer run may be too short for a verdict of its own. */
-static bool is_chaotic_too(const nevh_chaos_confirmation *c) {
+/* Chaos that steps make is less with finer ones.  A finer run may be too short for a
+   verdict of its own. */
+static bool is_chaotic_too(const nevh_chaos_confirmation *c, double value) {
+    static const double most = 0.7; /* of an exponent, that is less */
     const nevh_chaos_finding *f = &c->found;
-    return f->report.verdict == NEVH_CHAOTIC ||
+    bool less = !c->agrees && f->exponent < most * value;
+    return (f->report.verdict == NEVH_CHAOTIC && !less) ||
            ((f->report.verdict == NEVH_EARLY || f->report.kinks) && c->agrees &&
             f->exponent > 2 * f->error);
 }
@@ -113,7 +116,7 @@ static void chaos_confirm_judge(const nevh_chaos_report *run, double value,
     const nevh_chaos_finding *f = &to->found;
     to->agrees = nevh_agree(value, error, f->exponent, f->error);
     bool holds = run->verdict == NEVH_CHAOTIC
-                     ? is_chaotic_too(to)
+                     ? is_chaotic_too(to, value)
                      : f->report.verdict != NEVH_CHAOTIC;
     to->verdict = holds ? run->verdict : NEVH_UNRESOLVED;
 }

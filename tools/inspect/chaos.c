@@ -175,12 +175,11 @@ static void unresolved_words(chaos_job *j, const row *r) {
     char *what =
         c->how == NEVH_FINER_NONE ? text_print("no finer steps could be taken")
         : finer == NEVH_CHAOTIC
-            ? text_print("by finer ones (%s) the orbit is chaotic, with an "
-                         "exponent of %.3g +- %.1g: take a shorter dt",
+            ? text_print("finer ones (%s) are chaotic with an exponent of %.3g "
+                         "+- %.1g: take a shorter dt",
                          c->text, c->found.exponent, c->found.error)
         : finer == NEVH_REGULAR
-            ? text_print("by finer ones (%s) the orbit is regular: take a "
-                         "shorter dt",
+            ? text_print("finer ones (%s) are regular: take a shorter dt",
                          c->text)
             : text_print("finer ones (%s, until t = %.4g) do not confirm it: "
                          "take a shorter dt, or a longer run with --t-end",
