@@ -143,8 +143,9 @@ NEVH_API const nevh_system *nevh_scene_system(nevh_scene *);
 NEVH_API const nevh_system *nevh_scene_exact_system(nevh_scene *);
 /* The orbit of that system from the scene's start, for nevh_certain_go.  Numbers
    that are written, as 0.1, are the doubles nearest to them; what is computed of
-   them - parameters, starts, momenta of velocities, friction, times - has all
-   digits.
+   them - parameters, starts, momenta of velocities, friction, times - has those of
+   quad precision; errors count what rounding leaves of differences.
+   cost     the first time, that of reading the scene anew twice
    digits   as of nevh_certain_new
    returns  to be freed with nevh_certain_free, before the scene changes; NULL
             with a status and a message of the scene, as above, or NEVH_EMAXITER

@@ -101,25 +101,29 @@ bool nevh__scope_loop(nevh__scope *s, const nevh__expression *loop,
 }
 
 #define real               double
+#define EXACT(x)           (x)
 #define NAMED(name)        name##_value
 #define OPERATION(f, a, b) nevh__operation_value(f, a, b)
 #define NUMBER(e)          (e)->number
 #define ELEMENT(e, index)  (e)->values[index]
 #include "expression/evaluate_text.h"
 #undef real
+#undef EXACT
 #undef NAMED
 #undef OPERATION
 #undef NUMBER
 #undef ELEMENT
 
 /* Numbers that are written are doubles. */
-static nevh__wide evaluate_element(const nevh__expression *e, size_t index) {
-    return e->wide_values ? e->wide_values[index] : e->values[index];
+static nevh__rounded evaluate_element(const nevh__expression *e, size_t index) {
+    return e->wide_values ? e->wide_values[index]
+                          : (nevh__rounded){e->values[index], 0};
 }
 
-#define real               nevh__wide
+#define real               nevh__rounded
+#define EXACT(x)           ((nevh__rounded){x, 0})
 #define NAMED(name)        name##_wide
-#define OPERATION(f, a, b) nevh__operation_wide(f, a, b)
+#define OPERATION(f, a, b) nevh__operation_rounded(f, a, b)
 #define NUMBER(e)          (e)->wide_number
 #define ELEMENT(e, index)  evaluate_element(e, index)
 #include "expression/evaluate_text.h"

@@ -1,7 +1,8 @@
 /* nevh: the number that an expression stands for, in one kind of numbers.
 
-   Before this is included are defined: real; NAMED(name), the name of a
-   function; OPERATION(f, a, b), NUMBER(e) and ELEMENT(e, index) of theirs.
+   Before this is included are defined: real; EXACT(x), the real of a number that
+   is not rounded; NAMED(name), the name of a function; OPERATION(f, a, b), NUMBER(e)
+   and ELEMENT(e, index) of theirs.
    SPDX-License-Identifier: GPL-3.0-or-later */
 
 typedef struct {
@@ -12,13 +13,14 @@ typedef struct {
 
 static bool NAMED(add_body)(void *context) {
     NAMED(total) *sum = context;
-    sum->sum += NAMED(nevh__expression)(sum->scope, sum->body);
+    sum->sum = OPERATION(NEVH__ADD, sum->sum,
+                         NAMED(nevh__expression)(sum->scope, sum->body));
     return !sum->scope->error->status;
 }
 
 static real NAMED(loop_value)(nevh__scope *s, const nevh__expression *e) {
-    NAMED(total) sum = {s, e->operands[2].of, 0};
-    return nevh__scope_loop(s, e, NAMED(add_body), &sum) ? sum.sum : NAN;
+    NAMED(total) sum = {s, e->operands[2].of, EXACT(0)};
+    return nevh__scope_loop(s, e, NAMED(add_body), &sum) ? sum.sum : EXACT(NAN);
 }
 
 static real NAMED(chain_value)(nevh__scope *s, const nevh__expression *e) {
@@ -26,23 +28,26 @@ static real NAMED(chain_value)(nevh__scope *s, const nevh__expression *e) {
     for (size_t i = 1; i < e->n; i++) {
         real next = NAMED(nevh__expression)(s, e->operands[i].of);
         bool inverse = e->operands[i].inverse;
-        if (e->form == NEVH__FORM_SUM)
-            value = inverse ? value - next : value + next;
-        else
-            value = inverse ? value / next : value * next;
+        nevh__tape_operation by = e->form == NEVH__FORM_SUM
+                                      ? inverse ? NEVH__SUBTRACT : NEVH__ADD
+                                  : inverse ? NEVH__DIVIDE
+                                            : NEVH__MULTIPLY;
+        value = OPERATION(by, value, next);
     }
     return value;
 }
 
 static real NAMED(apply_value)(nevh__scope *s, const nevh__expression *e) {
     real a = NAMED(nevh__expression)(s, e->operands[0].of);
-    real b = e->n > 1 ? NAMED(nevh__expression)(s, e->operands[1].of) : 0;
+    real b =
+        e->n > 1 ? NAMED(nevh__expression)(s, e->operands[1].of) : EXACT(0);
     return OPERATION(e->operation, a, b);
 }
 
 static real NAMED(element_value)(nevh__scope *s, const nevh__expression *e) {
     size_t index;
-    return nevh__expression_element(s, e, &index) ? ELEMENT(e, index) : NAN;
+    return nevh__expression_element(s, e, &index) ? ELEMENT(e, index)
+                                                  : EXACT(NAN);
 }
 
 real NAMED(nevh__expression)(nevh__scope *s, const nevh__expression *e) {
@@ -50,7 +55,7 @@ real NAMED(nevh__expression)(nevh__scope *s, const nevh__expression *e) {
     case NEVH__FORM_NUMBER:
         return NUMBER(e);
     case NEVH__FORM_INDEX:
-        return s->value[e->slot];
+        return EXACT(s->value[e->slot]);
     case NEVH__FORM_PARAMETER:
         return NAMED(element_value)(s, e);
     case NEVH__FORM_SUM:
@@ -64,5 +69,5 @@ real NAMED(nevh__expression)(nevh__scope *s, const nevh__expression *e) {
     case NEVH__FORM_VARIABLE:
         break;
     }
-    return NAN; /* who asks makes sure that nothing is read */
+    return EXACT(NAN); /* who asks makes sure that nothing is read */
 }

@@ -51,7 +51,7 @@ static uint64_t bits(double number) {
 static void set_hash(nevh__expression *e) {
     uint64_t hash = mix(1, e->form);
     hash = mix(hash, bits(e->number));
-    hash = mix(hash, bits((double)(e->wide_number - e->number)));
+    hash = mix(hash, bits((double)(e->wide_number.value - e->number)));
     hash = mix(hash, (uint64_t)(uintptr_t)e->values);
     hash = mix(hash, e->kind);
     hash = mix(hash, e->first);
@@ -100,8 +100,8 @@ nevh__expression *nevh__expression_finish(nevh__resolver *r,
     bool constant = !e->reads && !e->indices && e->form != NEVH__FORM_NUMBER;
     if (constant) {
         e->number = nevh__expression_value(&r->scope, e);
-        e->wide_number =
-            r->names->exact ? nevh__expression_wide(&r->scope, e) : e->number;
+        e->wide_number = r->names->exact ? nevh__expression_wide(&r->scope, e)
+                                         : (nevh__rounded){e->number, 0};
         e->form = NEVH__FORM_NUMBER;
         e->n = 0;
     }
@@ -117,6 +117,6 @@ nevh__expression *nevh__expression_number(nevh__resolver *r,
     if (!e)
         return NULL;
     e->number = number;
-    e->wide_number = number;
+    e->wide_number = (nevh__rounded){number, 0};
     return nevh__expression_finish(r, e);
 }

@@ -32,14 +32,16 @@ int nevh__tree_number(const nevh__tree *tree, const nevh__names *names,
 }
 
 int nevh__tree_wide(const nevh__tree *tree, const nevh__names *names,
-                    const nevh__index *at, nevh__wide *value,
+                    const nevh__index *at, nevh__rounded *value,
                     nevh__formula_error *error) {
     *error = (nevh__formula_error){0};
     nevh__pool pool = {0};
     nevh__expression *e = nevh__resolve(tree, names, at, 0, &pool, error);
     nevh__scope scope = {.error = error};
-    nevh__wide number = e ? nevh__expression_wide(&scope, e) : NAN;
-    if (e && nevh__scope_finite(&scope, (double)number, e))
+    nevh__rounded number = {0, 0};
+    if (e)
+        number = nevh__expression_wide(&scope, e);
+    if (e && nevh__scope_finite(&scope, (double)number.value, e))
         *value = number;
     nevh__pool_free(&pool);
     return error->status;
@@ -122,6 +124,7 @@ int nevh__tree_add_terms(const nevh__tree *tree, const nevh__names *names,
     nevh__adder adder = {.system = system, .effect = effect, .owned = owned};
     adder.walk.limit = NEVH__INSTANCE_LENGTH;
     adder.walk.exact = names->exact;
+    adder.walk.away = names->away;
     if (e && nevh__split(&parts, e))
         add_parts(&adder, names, &parts);
     free(parts.parts);

@@ -118,7 +118,7 @@ typedef struct {
     nevh__meaning meaning; /* parameter, coordinate or definition */
     size_t count, first;
     double *values;
-    nevh__wide *wide; /* the same with more digits; NULL: these are all */
+    nevh__rounded *wide; /* the same with more digits; NULL: these are all */
     nevh__tree *tree;
     size_t next; /* of the same chain, from 1; 0: none */
 } nevh__entry;
@@ -127,7 +127,7 @@ struct nevh__names {
     nevh__entry *entries;
     size_t count;
     size_t chain[NEVH__CHAINS]; /* by name: the last entry, from 1; 0: none */
-    bool exact;                 /* nevh__names_exact */
+    bool exact, away;           /* nevh__names_exact, nevh__names_away */
 };
 /* meaning: also of p_NAME and v_NAME, whose entry is that of NAME. */
 const nevh__entry *nevh__entry_named(const nevh__names *, const char *name,
@@ -177,9 +177,9 @@ struct nevh__expression {
     const char *definition;
     const char *name; /* of an element, or of the index of a loop */
     double number;
-    nevh__wide wide_number; /* where names are exact: with more digits */
+    nevh__rounded wide_number; /* where names are exact: with more digits */
     const double *values;
-    const nevh__wide *wide_values; /* NULL: the others are all */
+    const nevh__rounded *wide_values; /* NULL: the others are all */
     nevh__variable kind;
     size_t first, count;
     nevh__tape_operation operation;
@@ -218,7 +218,7 @@ bool nevh__scope_finite(nevh__scope *, double, const nevh__expression *);
    error, when it has none. */
 double nevh__expression_value(nevh__scope *, const nevh__expression *);
 /* The same with more digits. */
-nevh__wide nevh__expression_wide(nevh__scope *, const nevh__expression *);
+nevh__rounded nevh__expression_wide(nevh__scope *, const nevh__expression *);
 /* A whole number, for an index or a bound (`what`). */
 bool nevh__expression_integer(nevh__scope *, const nevh__expression *,
                               const char *what, long *value);
@@ -265,6 +265,7 @@ typedef struct {
     nevh__tape_builder *builder;
     bool whole; /* slots are indices in the system */
     bool exact; /* constants are sums of NEVH__WIDE_PARTS numbers */
+    bool away;  /* as far from their values as rounding may have moved them */
     size_t limit, length;
     uint64_t stamp;
 

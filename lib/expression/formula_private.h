@@ -67,13 +67,16 @@ void nevh__names_free(nevh__names *);
    numbers that are written are doubles.  In terms a constant is a sum of
    doubles that the tape leaves for who reads it with more digits. */
 void nevh__names_exact(nevh__names *);
+/* The same, and constants in terms are as far from their values as rounding may
+   have moved these. */
+void nevh__names_away(nevh__names *);
 /* count    0: one number; else an array 1 ... count
    values   in, one or count of them; copied */
 int nevh__names_add_parameter(nevh__names *, const char *name, size_t count,
                               const double values[], nevh__formula_error *);
 /* wide     the same values with more digits; NULL: there are none */
 int nevh__names_add_wide(nevh__names *, const char *name, size_t count,
-                         const double values[], const nevh__wide wide[],
+                         const double values[], const nevh__rounded wide[],
                          nevh__formula_error *);
 /* count    as above; p_NAME and v_NAME come with it
    first    index of the (first) coordinate in the system */
@@ -125,7 +128,7 @@ int nevh__tree_number(const nevh__tree *, const nevh__names *,
                       nevh__formula_error *);
 /* The same with more digits, of names that are exact. */
 int nevh__tree_wide(const nevh__tree *, const nevh__names *,
-                    const nevh__index *, nevh__wide *value,
+                    const nevh__index *, nevh__rounded *value,
                     nevh__formula_error *);
 /* The same for what must be a whole number. */
 int nevh__tree_integer(const nevh__tree *, const nevh__names *,

@@ -193,8 +193,8 @@ static nevh__expression *resolve_constant(nevh__resolver *r,
     nevh__expression *pi = nevh__expression_new(r, NEVH__FORM_NUMBER, node, 0);
     if (!pi)
         return NULL;
-    pi->wide_number = nevh__wide_pi();
-    pi->number = (double)pi->wide_number;
+    pi->wide_number = nevh__rounded_pi();
+    pi->number = (double)pi->wide_number.value;
     return nevh__expression_finish(r, pi);
 }
 

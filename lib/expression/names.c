@@ -20,6 +20,10 @@ void nevh__names_exact(nevh__names *names) {
     names->exact = true;
 }
 
+void nevh__names_away(nevh__names *names) {
+    names->exact = names->away = true;
+}
+
 void nevh__names_free(nevh__names *names) {
     for (size_t i = 0; names && i < names->count; i++)
         entry_free(&names->entries[i]);
@@ -151,11 +155,11 @@ static void drop_last_entry(nevh__names *names) {
 }
 
 int nevh__names_add_wide(nevh__names *names, const char *name, size_t count,
-                         const double values[], const nevh__wide wide[],
+                         const double values[], const nevh__rounded wide[],
                          nevh__formula_error *error) {
     size_t n = count ? count : 1;
     double *copy = nevh__copy(values, n, sizeof *values);
-    nevh__wide *wide_copy = wide ? nevh__copy(wide, n, sizeof *wide) : NULL;
+    nevh__rounded *wide_copy = wide ? nevh__copy(wide, n, sizeof *wide) : NULL;
     bool copied = copy && (!wide || wide_copy);
     nevh__entry *entry = new_entry(names, name, error);
     if (!entry || !copied) {

@@ -41,7 +41,7 @@ static nevh__expression *resolve_apply(nevh__resolver *r,
     e->operation = operation;
     const nevh__expression *last = e->operands[e->n - 1].of;
     if (operation == NEVH__POWER && last->form == NEVH__FORM_NUMBER &&
-        last->wide_number == 1)
+        last->wide_number.value == 1)
         return e->operands[0].of;
     return nevh__expression_finish(r, e);
 }

@@ -74,11 +74,16 @@ static int constant(nevh__walk *w, double value, const nevh__expression *at) {
                : nevh__tape_variable(w->builder, NEVH__C, (size_t)column);
 }
 
+static nevh__wide constant_of(const nevh__walk *w, nevh__rounded x) {
+    return w->away ? x.value + x.off : x.value;
+}
+
 /* The same in parts, each of which may differ between instances. */
 static int wide_constant(nevh__walk *w, const nevh__expression *e) {
     double part[NEVH__WIDE_PARTS] = {0};
     if (noting(w))
-        nevh__wide_split(nevh__expression_wide(&w->scope, e), part);
+        nevh__wide_split(constant_of(w, nevh__expression_wide(&w->scope, e)),
+                         part);
     int node = constant(w, part[0], e);
     for (int i = 1; i < NEVH__WIDE_PARTS && !failed(w); i++) {
         int next = constant(w, part[i], e);
@@ -94,7 +99,8 @@ static int walk_constant(nevh__walk *w, const nevh__expression *e) {
         return constant(w, noting(w) ? nevh__expression_value(&w->scope, e) : 0,
                         e);
     nevh__scope_finite(&w->scope, e->number, e);
-    return walk_number(w, w->exact ? e->wide_number : e->number);
+    return walk_number(w,
+                       w->exact ? constant_of(w, e->wide_number) : e->number);
 }
 
 /* Variables. */

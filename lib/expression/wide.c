@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/wide_private.h"
 #include "expression/tape_private.h"
+#include "expression/tape_inside_private.h"
 #ifndef NEVH_QUADMATH
 #include "expression/tape_operations_private.h"
 #undef NEVH__L
@@ -98,4 +99,44 @@ nevh__wide nevh__operation_wide(unsigned operation, nevh__wide a,
     default:
         return a - a;
     }
+}
+
+nevh__rounded nevh__rounded_pi(void) {
+    nevh__wide pi = nevh__wide_pi();
+    return (nevh__rounded){pi, pi * NEVH__WIDE_EPSILON};
+}
+
+/* True of a result without rounding.  What is left of sums, products, quotients and
+   roots is a number itself. */
+static bool is_exact(unsigned operation, nevh__wide a, nevh__wide b,
+                     nevh__wide y) {
+    switch (operation) {
+    case NEVH__SUBTRACT:
+        b = -b;
+        /* fall through */
+    case NEVH__ADD:
+        return (a - (y - (y - a))) + (b - (y - a)) == 0;
+    case NEVH__MULTIPLY:
+        return NEVH__F(fma)(a, b, -y) == 0;
+    case NEVH__DIVIDE:
+        return NEVH__F(fma)(y, b, -a) == 0;
+    case NEVH__SQRT:
+        return NEVH__F(fma)(y, y, -a) == 0;
+    default:
+        return nevh__operation_of(operation)->exact;
+    }
+}
+
+nevh__rounded nevh__operation_rounded(unsigned operation, nevh__rounded a,
+                                      nevh__rounded b) {
+    nevh__wide y = nevh__operation_wide(operation, a.value, b.value), off = 0;
+    for (int i = 0; i < 4 && (a.off > 0 || b.off > 0); i++) {
+        nevh__wide corner = nevh__operation_wide(
+            operation, i % 2 ? a.value + a.off : a.value - a.off,
+            i / 2 ? b.value + b.off : b.value - b.off);
+        off = real_max(NEVH__F(fabs)(corner - y), off);
+    }
+    if (!is_exact(operation, a.value, b.value, y))
+        off += NEVH__F(fabs)(y) * NEVH__WIDE_EPSILON;
+    return (nevh__rounded){y, off};
 }

@@ -7,20 +7,31 @@
 __extension__ typedef __float128 nevh__wide;
 #define NEVH__WIDE_FUNCTION(f) f##q
 #define NEVH__WIDE_ROUNDING    0x1p-106 /* of a few operations */
+#define NEVH__WIDE_EPSILON     0x1p-112
 #elif defined(__wasm__) /* long doubles are slow and large there */
 typedef double nevh__wide;
 #define NEVH__WIDE_FUNCTION(f) f
 #define NEVH__WIDE_ROUNDING    0x1p-48
+#define NEVH__WIDE_EPSILON     0x1p-52
 #else
 typedef long double nevh__wide;
 #define NEVH__WIDE_FUNCTION(f) f##l
 #define NEVH__WIDE_ROUNDING    0x1p-58
+#define NEVH__WIDE_EPSILON     0x1p-63
 #endif
 
 /* One nevh__tape_operation on numbers.  Without libquadmath special functions
    are those of doubles. */
 nevh__wide nevh__operation_wide(unsigned operation, nevh__wide a, nevh__wide b);
 nevh__wide nevh__wide_pi(void);
+
+/* A number that was computed, and how far rounding may have moved it. */
+typedef struct {
+    nevh__wide value, off;
+} nevh__rounded;
+nevh__rounded nevh__rounded_pi(void);
+nevh__rounded nevh__operation_rounded(unsigned operation, nevh__rounded a,
+                                      nevh__rounded b);
 
 /* Three doubles whose sum is the number. */
 enum { NEVH__WIDE_PARTS = 3 };

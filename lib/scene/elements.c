@@ -40,6 +40,19 @@ bool nevh__is_elements(const nevh__piece *value) {
 #define ECCENTRIC(M, e) nevh__operation_wide(NEVH__ECCENTRIC, M, e)
 #include "scene/elements_text.h"
 
+static void place_rounded(const nevh__rounded x[], size_t member,
+                          nevh__rounded *q, nevh__rounded *v) {
+    nevh__wide value[ELEMENTS], away[ELEMENTS], q_away, v_away;
+    for (size_t i = 0; i < ELEMENTS; i++) {
+        value[i] = x[i].value;
+        away[i] = x[i].value + x[i].off;
+    }
+    wide_place(value, member, &q->value, &v->value);
+    wide_place(away, member, &q_away, &v_away);
+    q->off = NEVH__WIDE_FUNCTION(fabs)(q_away - q->value);
+    v->off = NEVH__WIDE_FUNCTION(fabs)(v_away - v->value);
+}
+
 static bool elements_check(nevh_scene *s, const nevh__statement *one,
                            const nevh__piece arguments[], const double *x) {
     if (!(x[E] >= 0 && x[E] < 1))
@@ -86,16 +99,17 @@ bool nevh__elements_values(nevh_scene *s, nevh__scene_model *m,
             return false;
     for (size_t k = 0; k < count; k++) {
         double x[ELEMENTS];
-        nevh__wide wide[ELEMENTS];
+        nevh__rounded wide[ELEMENTS];
         for (size_t i = 0; i < ELEMENTS; i++) {
             x[i] = all.near[i * count + k];
-            wide[i] = all.wide ? all.wide[i * count + k] : 0;
+            wide[i] =
+                all.wide ? all.wide[i * count + k] : (nevh__rounded){0, 0};
         }
         if (!elements_check(s, one, arguments, x))
             return false;
         place(x, one->member, &q.near[k], &v.near[k]);
         if (all.wide)
-            wide_place(wide, one->member, &q.wide[k], &v.wide[k]);
+            place_rounded(wide, one->member, &q.wide[k], &v.wide[k]);
     }
     return true;
 }

@@ -110,7 +110,7 @@ bool nevh__piece_number(nevh_scene *s, const nevh__scene_model *m,
 }
 
 bool nevh__piece_wide(nevh_scene *s, const nevh__scene_model *m,
-                      const nevh__piece *piece, nevh__wide *value) {
+                      const nevh__piece *piece, nevh__rounded *value) {
     nevh__formula_error error = {0};
     nevh__tree *tree = nevh__piece_tree(s, piece);
     if (!tree)

@@ -31,20 +31,25 @@ void nevh__model_free(nevh__scene_model *m) {
     free(m);
 }
 
-static bool make_exact(nevh__scene_model *m) {
+typedef enum { DOUBLES, EXACT, AWAY } digits_kind;
+
+static bool make_exact(nevh__scene_model *m, bool away) {
     m->exact = nevh__pool_take(&m->pool, 1, sizeof *m->exact);
-    nevh__names_exact(m->names);
-    return m->exact;
+    if (!m->exact)
+        return false;
+    m->exact->away = away;
+    (away ? nevh__names_away : nevh__names_exact)(m->names);
+    return true;
 }
 
-static nevh__scene_model *new_model(nevh_scene *s, bool exact) {
+static nevh__scene_model *new_model(nevh_scene *s, digits_kind digits) {
     nevh__scene_model *m = nevh__array(1, sizeof *m);
     if (!m || !(m->names = nevh__names_new())) {
         free(m);
         nevh__scene_no_memory(s);
         return NULL;
     }
-    if (exact && !make_exact(m))
+    if (digits && !make_exact(m, digits == AWAY))
         nevh__scene_no_memory(s);
     else if (nevh__model_parameters(s, m) && nevh__model_coordinates(s, m) &&
              nevh__model_definitions(s, m) && nevh__model_values(s, m) &&
@@ -56,18 +61,28 @@ static nevh__scene_model *new_model(nevh_scene *s, bool exact) {
     return NULL;
 }
 
-nevh__scene_model *nevh__scene_exact(nevh_scene *s) {
+static nevh__scene_model *model_once(nevh_scene *s, nevh__scene_model **made,
+                                     digits_kind digits) {
     if (!nevh__scene_begin(s))
         return NULL;
-    if (!s->exact)
-        s->exact = new_model(s, true);
-    return s->exact;
+    if (!*made)
+        *made = new_model(s, digits);
+    return *made;
 }
 
-/* The other model is for what was before a change. */
+nevh__scene_model *nevh__scene_exact(nevh_scene *s) {
+    return model_once(s, &s->exact, EXACT);
+}
+
+nevh__scene_model *nevh__scene_away(nevh_scene *s) {
+    return model_once(s, &s->away, AWAY);
+}
+
+/* The other models are for what was before a change. */
 static void forget_exact(nevh_scene *s) {
     nevh__model_free(s->exact);
-    s->exact = NULL;
+    nevh__model_free(s->away);
+    s->exact = s->away = NULL;
 }
 
 /* After a change of the scene. */
@@ -80,7 +95,7 @@ static void take_model(nevh_scene *s, nevh__scene_model *model) {
 nevh__scene_model *nevh__model_with(nevh_scene *s,
                                     const struct nevh__overrides *overrides) {
     s->overrides = overrides;
-    nevh__scene_model *m = new_model(s, false);
+    nevh__scene_model *m = new_model(s, DOUBLES);
     s->overrides = NULL;
     return m;
 }
@@ -99,7 +114,7 @@ static void scene_begin(nevh_scene *s, const nevh_scene_options *options,
     s->allow_code = options->allow_code;
     if (nevh__scene_cut(s, text, bytes) && nevh__scene_effects(s) &&
         nevh__scene_switch(s, options))
-        s->model = new_model(s, false);
+        s->model = new_model(s, DOUBLES);
 }
 
 static void scene_refuse(nevh_scene *s, int status, const char *why) {
@@ -205,7 +220,7 @@ nevh_scene *nevh_scene_read_with(const char *path,
 void nevh_scene_free(nevh_scene *s) {
     if (!s)
         return;
-    nevh__model_free(s->exact);
+    forget_exact(s);
     nevh__model_free(s->model);
     nevh__scene_unload_code(s);
     nevh__scene_forget_integrators(s);
@@ -287,7 +302,7 @@ static bool check_assignment(nevh_scene *s, const nevh__statement *statement) {
 /* Takes the model anew, with what was put last on a list, or without it. */
 static int keep_if_fine(nevh_scene *s, nevh__statement *statement, bool fine,
                         size_t *count) {
-    nevh__scene_model *model = fine ? new_model(s, false) : NULL;
+    nevh__scene_model *model = fine ? new_model(s, DOUBLES) : NULL;
     if (!model) {
         --*count;
         nevh__head_free(&statement->head);
@@ -336,7 +351,7 @@ int nevh_scene_vary(nevh_scene *s, const char *const lines[], size_t count) {
         if (statement)
             s->varies[s->n_varies++] = statement;
     }
-    nevh__scene_model *model = s->status ? NULL : new_model(s, false);
+    nevh__scene_model *model = s->status ? NULL : new_model(s, DOUBLES);
     if (!model) {
         while (s->n_varies > before)
             nevh__head_free(&s->varies[--s->n_varies]->head);
@@ -379,7 +394,7 @@ int nevh_scene_set_transform(nevh_scene *s, const char *formula) {
     if (!piece)
         return s->status;
     s->transform = piece;
-    nevh__scene_model *model = new_model(s, false);
+    nevh__scene_model *model = new_model(s, DOUBLES);
     if (!model) {
         s->transform = before;
         return s->status;
@@ -398,7 +413,7 @@ int nevh_scene_set_outcomes(nevh_scene *s, const char *outcomes) {
     if (!piece)
         return s->status;
     s->outcomes = piece;
-    nevh__scene_model *model = new_model(s, false);
+    nevh__scene_model *model = new_model(s, DOUBLES);
     if (!model) {
         s->outcomes = before;
         return s->status;

@@ -14,17 +14,28 @@ const nevh_system *nevh_scene_exact_system(nevh_scene *s) {
 
 int nevh_scene_exact_number(nevh_scene *s, const char *formula, double *number,
                             long double *rest) {
+    static const double few = 1024 * NEVH__WIDE_EPSILON;
     const nevh__scene_model *m = s ? nevh__scene_exact(s) : NULL;
     if (!m)
         return s ? s->status : NEVH_EINVAL;
     nevh__line line = {0, formula, formula ? strlen(formula) : 0};
     nevh__piece piece = {&line, formula, formula};
-    nevh__wide value = m->exact->t_end;
+    nevh__rounded value = m->exact->t_end;
     if (formula && !nevh__piece_wide(s, m, &piece, &value))
         return s->status;
-    *number = (double)value;
-    *rest = (long double)(value - *number);
+    if (formula && (double)value.off > few * fabs((double)value.value))
+        return nevh__scene_fail(s, NEVH_EINVAL, &piece,
+                                "a difference of nearly equal numbers leaves "
+                                "too few digits of %.9g: write it as a number",
+                                (double)value.value),
+               s->status;
+    *number = (double)value.value;
+    *rest = (long double)(value.value - *number);
     return NEVH_OK;
+}
+
+static nevh__wide number_of(const nevh__scene_model *m, nevh__rounded x) {
+    return m->exact->away ? x.value + x.off : x.value;
 }
 
 #ifdef NEVH_QUADMATH
@@ -45,14 +56,15 @@ static const double solved = 1e-32, enough = 1e-30;
 static double scene_exact_measure(search *s) {
     size_t n = s->m->n;
     double most = 0, size = 0;
-    if (!nevh__series_expand_quad(s->series, s->m->exact->t_start, s->state,
-                                  s->rows))
+    if (!nevh__series_expand_quad(s->series,
+                                  number_of(s->m, s->m->exact->t_start),
+                                  s->state, s->rows))
         return INFINITY;
     for (size_t j = 0; j < s->count; j++) {
         size_t k = s->row[j];
-        s->off[j] = s->m->exact->v[k] - s->rows[2 * n + k];
+        s->off[j] = number_of(s->m, s->m->exact->v[k]) - s->rows[2 * n + k];
         most = fmax(most, fabs((double)s->off[j]));
-        size = fmax(size, fabs((double)s->m->exact->v[k]));
+        size = fmax(size, fabs((double)s->m->exact->v[k].value));
     }
     return most > 0 ? most / (size > 0 ? size : 1) : 0;
 }
@@ -156,7 +168,8 @@ static int find_momenta(nevh_scene *scene, const nevh__scene_model *m,
     if (s.series && s.state && s.row) {
         s.rows = s.state + 2 * n;
         s.off = s.rows + 2 * (ORDER + 1) * n;
-        memcpy(s.state, m->exact->q, n * sizeof *p);
+        for (size_t k = 0; k < n; k++)
+            s.state[k] = number_of(m, m->exact->q[k]);
         memcpy(s.state + n, p, n * sizeof *p);
         for (size_t k = 0; k < n; k++)
             if (m->by_velocity[k])
@@ -190,27 +203,45 @@ static int take_momenta(nevh_scene *s, const nevh__scene_model *m,
     int status = nevh_scene_start(s, state, state + m->n);
     for (size_t k = 0; !status && k < m->n; k++) {
         any = any || m->by_velocity[k];
-        p[k] = m->by_velocity[k] ? state[m->n + k] : m->exact->p[k];
+        p[k] =
+            m->by_velocity[k] ? state[m->n + k] : number_of(m, m->exact->p[k]);
     }
     free(state);
     return status || !any ? status : find_momenta(s, m, p);
 }
 
+/* Takes the start of the orbit of a model.
+   room     3n
+   returns  false: the scene knows why */
+static bool start_certain(nevh_scene *s, const nevh__scene_model *m,
+                          nevh__wide room[], nevh__certain_start *from) {
+    size_t n = m->n;
+    for (size_t k = 0; k < n; k++) {
+        room[k] = number_of(m, m->exact->q[k]);
+        room[2 * n + k] = number_of(m, m->exact->rates[k]);
+    }
+    *from = (nevh__certain_start){.system = m->system,
+                                  .t = number_of(m, m->exact->t_start),
+                                  .q = room,
+                                  .p = room + n,
+                                  .rates = room + 2 * n};
+    return !take_momenta(s, m, room + n);
+}
+
 nevh_certain *nevh_scene_certain(nevh_scene *s, int digits) {
     const nevh__scene_model *m = s ? nevh__scene_exact(s) : NULL;
-    nevh__wide *p = m ? nevh__array(m->n, sizeof *p) : NULL;
+    const nevh__scene_model *away = m ? nevh__scene_away(s) : NULL;
+    nevh__wide *room = away ? nevh__array(6 * m->n, sizeof *room) : NULL;
+    nevh__certain_start from, other;
     nevh_certain *c = NULL;
-    if (m && !p)
+    if (away && !room)
         nevh__scene_no_memory(s);
-    if (p && !take_momenta(s, m, p)) {
-        nevh__certain_start from = {.t = m->exact->t_start,
-                                    .q = m->exact->q,
-                                    .p = p,
-                                    .rates = m->exact->rates};
-        c = nevh__certain_from(m->system, &from, digits);
+    if (room && start_certain(s, m, room, &from) &&
+        start_certain(s, away, room + 3 * m->n, &other)) {
+        c = nevh__certain_from(&from, &other, digits);
         if (!c)
             nevh__scene_no_memory(s);
     }
-    free(p);
+    free(room);
     return c;
 }

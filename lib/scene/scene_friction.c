@@ -34,11 +34,12 @@ static bool set_rate(nevh_scene *s, nevh__scene_model *m, friction *d, size_t k,
     d->given[k] = true;
     const nevh__index *index = at.name ? &at : NULL;
     int status = nevh__tree_number(tree, m->names, index, &d->rates[k], &error);
-    nevh__wide rate = 0;
+    nevh__rounded rate = {0, 0};
     if (m->exact && !status)
         status = nevh__tree_wide(tree, m->names, index, &rate, &error);
     if (d->on && !status)
-        m->exact->rates[k] += rate;
+        m->exact->rates[k] =
+            nevh__operation_rounded(NEVH__ADD, m->exact->rates[k], rate);
     return !status || nevh__scene_fail_formula(s, &d->one.value, &error);
 }
 

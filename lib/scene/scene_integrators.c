@@ -47,13 +47,13 @@ void nevh__scene_forget_integrators(nevh_scene *s) {
 
 static bool take_number(nevh_scene *s, const nevh__scene_model *m,
                         const nevh__piece *part, long double *to) {
-    nevh__wide value;
+    nevh__rounded value;
     if (!part->text[0])
         return nevh__scene_fail(s, NEVH_EINVAL, part,
                                 "a number is missing here");
     if (!nevh__piece_wide(s, m, part, &value))
         return false;
-    *to = (long double)value;
+    *to = (long double)value.value;
     return true;
 }
 

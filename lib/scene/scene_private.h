@@ -106,8 +106,9 @@ typedef struct {
 
 /* The numbers of a model with all their digits: n each. */
 typedef struct {
-    nevh__wide *q, *p, *v, *rates; /* rates: of the friction that is on */
-    nevh__wide t_start, t_end;
+    nevh__rounded *q, *p, *v, *rates; /* rates: of the friction that is on */
+    nevh__rounded t_start, t_end;
+    bool away; /* as nevh__names_away */
 } nevh__exact_numbers;
 
 typedef struct nevh__scene_ensemble
@@ -171,7 +172,7 @@ struct nevh_scene {
     const nevh__piece *transform; /* from outside; NULL: the scene's */
     const nevh__piece *judged;    /* from outside; NULL: none */
     nevh__scene_model *model;
-    nevh__scene_model *exact; /* the same; NULL until asked for */
+    nevh__scene_model *exact, *away; /* the same; NULL until asked for */
     int status;
     char message[2000];
 };
@@ -219,7 +220,7 @@ nevh__tree *nevh__piece_tree(nevh_scene *, const nevh__piece *);
 bool nevh__piece_number(nevh_scene *, const nevh__scene_model *,
                         const nevh__piece *, double *value);
 bool nevh__piece_wide(nevh_scene *, const nevh__scene_model *,
-                      const nevh__piece *, nevh__wide *value);
+                      const nevh__piece *, nevh__rounded *value);
 bool nevh__piece_check(nevh_scene *, const nevh__scene_model *,
                        const nevh__piece *, unsigned allowed);
 
@@ -250,7 +251,7 @@ bool nevh__head_shape(nevh_scene *, const nevh__scene_model *,
 /* Numbers, and the same with more digits; NULL where the model is not exact. */
 typedef struct {
     double *near;
-    nevh__wide *wide;
+    nevh__rounded *wide;
 } nevh__scene_numbers;
 static inline nevh__scene_numbers
 nevh__scene_numbers_from(nevh__scene_numbers x, size_t k) {
@@ -315,6 +316,8 @@ void nevh__model_free(nevh__scene_model *);
 /* The model of the scene as it is, whose numbers have all their digits; NULL on
    failure.  The scene owns it until it changes. */
 nevh__scene_model *nevh__scene_exact(nevh_scene *);
+/* The same, with constants as far away as rounding may have moved them. */
+nevh__scene_model *nevh__scene_away(nevh_scene *);
 
 /* v = dH/dp at one state, n each; every term brings its gradient.
    buffer       of nevh__velocity_buffer, to be freed; NULL when memory is out */

@@ -1,6 +1,7 @@
 /* nevh: states to digits that are certain.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "taylor/certain_private.h"
+#include <fenv.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -24,18 +25,18 @@ struct nevh_certain {
     nevh__report report;
     size_t n;
     int digits;
-    nevh__recurrence *recurrence;
-    orbit fine, coarse;                  /* both of pairs, or neither */
-    const volatile sig_atomic_t *ending; /* or NULL */
+    nevh__recurrence *recurrence, *other; /* other: of the coarse run */
+    orbit fine, coarse;                   /* both of pairs, or neither */
+    const volatile sig_atomic_t *ending;  /* or NULL */
     double at, parted; /* times since t0: now, and when both were far apart; the
                            latter INFINITY: never */
     const nevh_system *system;
     nevh_timing *timing; /* from t0 until `seen`; NULL: H reads no time */
     double seen;
     nevh__wide t0, *start;
-    nevh__wide
-        *other; /* of the coarse run: some roundings away where the start is
-                          computed, as pi is, and no double */
+    nevh__wide t0_away, *computed,
+        *away; /* of the coarse run; away: some roundings
+                                             from where that is computed */
 };
 
 /* So many digits pairs may do for. */
@@ -52,19 +53,20 @@ static int certain_start(nevh_certain *c, orbit *o, bool pairs,
                          double tolerance) {
     certain_clear(o);
     o->pairs = pairs;
-    bool fine =
-        o->pairs
-            ? nevh__series_orbit_init_dd(&o->dd, c->recurrence, tolerance)
-            : nevh__series_orbit_init_quad(&o->quad, c->recurrence, tolerance);
+    bool is_other = o == &c->coarse;
+    nevh__recurrence *of = is_other ? c->other : c->recurrence;
+    bool fine = o->pairs
+                    ? nevh__series_orbit_init_dd(&o->dd, of, tolerance)
+                    : nevh__series_orbit_init_quad(&o->quad, of, tolerance);
     o->dd.timing = o->quad.timing = c->timing;
     o->dd.ending = o->quad.ending = c->ending;
     o->dd.backward = o->quad.backward = c->seen < (double)c->t0;
-    const nevh__wide *start = o == &c->coarse ? c->other : c->start;
+    const nevh__wide *start = is_other ? c->away : c->start;
+    nevh__wide t0 = is_other ? c->t0_away : c->t0;
     return !fine ? nevh__no_memory(&c->report)
            : o->pairs
-               ? nevh__series_orbit_start_dd(&o->dd, c->t0, start, &c->report)
-               : nevh__series_orbit_start_quad(&o->quad, c->t0, start,
-                                               &c->report);
+               ? nevh__series_orbit_start_dd(&o->dd, t0, start, &c->report)
+               : nevh__series_orbit_start_quad(&o->quad, t0, start, &c->report);
 }
 
 static int go(nevh_certain *c, orbit *o, nevh__wide t) {
@@ -103,11 +105,12 @@ static void shorten_first(orbit *o) {
 
 /* Steps alone round nothing at an equilibrium, such as x = pi. */
 static void round_start(nevh_certain *c, bool pairs) {
-    double by = ldexp(1, pairs ? -103 : -110);
+    nevh__wide by = ldexp(1, pairs ? -103 : -110);
     for (size_t k = 0; k < 2 * c->n; k++) {
-        bool given = (double)c->start[k] == c->start[k];
-        c->other[k] = given ? c->start[k] : c->start[k] * (1 + (nevh__wide)by);
-        by = -by;
+        nevh__wide x = c->start[k], y = c->computed[k];
+        bool up = y > x || (y == x && k % 2);
+        bool given = (double)x == x && x == y;
+        c->away[k] = given ? y : y + (up ? by : -by) * fabsq(y);
     }
 }
 
@@ -125,11 +128,31 @@ static int start_both(nevh_certain *c, bool pairs) {
     return certain_start(c, &c->fine, pairs, fmax(tolerance / 30, finest));
 }
 
-static int certain_make(nevh_certain *c, const nevh_system *system,
-                        const nevh__certain_start *from) {
-    size_t n = system->n;
-    if (system->report.status)
-        return nevh__fail_as(&c->report, &system->report);
+/* The start, and the same for the coarse run; false: memory is out. */
+static bool take_starts(nevh_certain *c, const nevh__certain_start *from,
+                        const nevh__certain_start *other) {
+    size_t n = c->n, size = n * sizeof *c->start;
+    c->start = nevh__array(6 * n, sizeof *c->start);
+    if (!c->start)
+        return false;
+    c->computed = c->start + 2 * n;
+    c->away = c->start + 4 * n;
+    memcpy(c->start, from->q, size);
+    memcpy(c->start + n, from->p, size);
+    memcpy(c->computed, other->q, size);
+    memcpy(c->computed + n, other->p, size);
+    c->t0 = from->t;
+    c->t0_away = other->t;
+    c->seen = (double)c->t0;
+    return true;
+}
+
+static int certain_make(nevh_certain *c, const nevh__certain_start *from,
+                        const nevh__certain_start *other) {
+    c->system = from->system;
+    c->n = c->system->n;
+    if (c->system->report.status)
+        return nevh__fail_as(&c->report, &c->system->report);
     if (!from->q || !from->p || !isfinite((double)from->t))
         return nevh__fail(&c->report, NEVH_EINVAL,
                           "an orbit needs a time and a state to start from");
@@ -137,28 +160,23 @@ static int certain_make(nevh_certain *c, const nevh_system *system,
         return nevh__fail(&c->report, NEVH_EINVAL,
                           "%d digits: there are 1 to %d", c->digits,
                           MOST_DIGITS);
-    c->n = n;
-    c->start = nevh__array(4 * n, sizeof *c->start);
-    if (!c->start)
+    if (!take_starts(c, from, other))
         return nevh__no_memory(&c->report);
-    c->other = c->start + 2 * n;
-    memcpy(c->start, from->q, n * sizeof *c->start);
-    memcpy(c->start + n, from->p, n * sizeof *c->start);
-    c->t0 = from->t;
-    c->seen = (double)c->t0;
-    c->system = system;
-    c->recurrence = nevh__recurrence_wide(system, from->rates, &c->report);
-    return c->recurrence ? start_both(c, c->digits <= DIGITS_OF_PAIRS)
-                         : c->report.status;
+    c->recurrence = nevh__recurrence_wide(c->system, from->rates, &c->report);
+    if (c->recurrence)
+        c->other =
+            nevh__recurrence_wide(other->system, other->rates, &c->report);
+    return c->other ? start_both(c, c->digits <= DIGITS_OF_PAIRS)
+                    : c->report.status;
 }
 
-nevh_certain *nevh__certain_from(const nevh_system *system,
-                                 const nevh__certain_start *from, int digits) {
-    nevh_certain *c = system ? nevh__array(1, sizeof *c) : NULL;
+nevh_certain *nevh__certain_from(const nevh__certain_start *from,
+                                 const nevh__certain_start *other, int digits) {
+    nevh_certain *c = nevh__array(1, sizeof *c);
     if (!c)
         return NULL;
     c->digits = digits;
-    if (certain_make(c, system, from) != NEVH_ENOMEM)
+    if (certain_make(c, from, other) != NEVH_ENOMEM)
         return c;
     nevh_certain_free(c);
     return NULL;
@@ -177,11 +195,12 @@ nevh_certain *nevh_certain_new(const nevh_system *system, double t0,
             wide[n + k] = p ? p[k] : 0;
             wide[2 * n + k] = rates[k];
         }
-        nevh__certain_start from = {.t = t0,
+        nevh__certain_start from = {.system = system,
+                                    .t = t0,
                                     .q = q ? wide : NULL,
                                     .p = p ? wide + n : NULL,
                                     .rates = damped ? wide + 2 * n : NULL};
-        c = nevh__certain_from(system, &from, digits);
+        c = nevh__certain_from(&from, &from, digits);
     }
     free(wide);
     free(rates);
@@ -194,6 +213,7 @@ void nevh_certain_free(nevh_certain *c) {
     certain_clear(&c->fine);
     certain_clear(&c->coarse);
     nevh__recurrence_free(c->recurrence);
+    nevh__recurrence_free(c->other);
     nevh_timing_free(c->timing);
     free(c->start);
     free(c);
@@ -227,8 +247,34 @@ static nevh__wide next_look(const nevh_certain *c, nevh__wide t) {
     return near ? t : t > now ? now + by : now - by;
 }
 
+/* The smallest state, as a part of the largest factor that it is multiplied by. */
+static double smallest(const nevh_certain *c) {
+    double least = INFINITY,
+           factor = c->fine.pairs ? c->fine.dd.unit : c->fine.quad.unit;
+    for (size_t i = 0; i < c->recurrence->n_numbers; i++)
+        factor = fmax(factor, fabs((double)c->recurrence->numbers[i]));
+    for (size_t k = 0; k < 2 * c->n; k++)
+        if (most(&c->fine, k) > 0)
+            least = fmin(least, most(&c->fine, k));
+    return least / fmax(factor, 1);
+}
+
+/* Sums are of doubles, which end at 1e-308: what is lost there may be all that there is
+   of a force, where states are small. */
+static int check_range(nevh_certain *c) {
+    static const double small = 1e-150;
+    if (!fetestexcept(FE_UNDERFLOW) || !(smallest(c) < small))
+        return NEVH_OK;
+    return nevh__fail(&c->report, NEVH_EFAILED,
+                      "near t = %.9g numbers are below 1e-308, where they lose "
+                      "their digits: measure lengths and times in smaller "
+                      "units",
+                      (double)(c->t0 + c->at));
+}
+
 static int go_both(nevh_certain *c, nevh__wide t) {
     int status = NEVH_OK;
+    feclearexcept(FE_UNDERFLOW);
     for (bool there = false; !status && !there;) {
         nevh__wide next = next_look(c, t);
         there = next == t;
@@ -238,6 +284,8 @@ static int go_both(nevh_certain *c, nevh__wide t) {
         c->at = (double)(next - c->t0);
         if (!status && have_parted(c))
             c->parted = fmin(c->parted, fabs(c->at));
+        if (!status)
+            status = check_range(c);
     }
     return status;
 }
@@ -386,10 +434,10 @@ struct nevh_certain {
     nevh__report report;
 };
 
-nevh_certain *nevh__certain_from(const nevh_system *system,
-                                 const nevh__certain_start *from, int digits) {
-    nevh_certain *c = system ? nevh__array(1, sizeof *c) : NULL;
-    (void)from, (void)digits;
+nevh_certain *nevh__certain_from(const nevh__certain_start *from,
+                                 const nevh__certain_start *other, int digits) {
+    nevh_certain *c = from->system ? nevh__array(1, sizeof *c) : NULL;
+    (void)other, (void)digits;
     if (c)
         nevh__fail(&c->report, NEVH_ESTRUCT,
                    "this nevh was built without libquadmath, which comes with "
@@ -400,7 +448,8 @@ nevh_certain *nevh__certain_from(const nevh_system *system,
 nevh_certain *nevh_certain_new(const nevh_system *system, double t0,
                                const double q[], const double p[], int digits) {
     (void)t0, (void)q, (void)p;
-    return nevh__certain_from(system, NULL, digits);
+    nevh__certain_start from = {.system = system};
+    return nevh__certain_from(&from, &from, digits);
 }
 
 void nevh_certain_free(nevh_certain *c) {

@@ -181,7 +181,7 @@ static long double slope_after(const orbit *o, size_t i, real since) {
 
 /* True if the series has the derivatives of H after a time. */
 static bool is_of_H(orbit *o, real since) {
-    static const long double alike = 1e-6L, nothing = 1e-100L;
+    static const long double alike = 1e-6L, nothing = 1e-100L, part = 1e-10L;
     size_t each = 2 * o->n;
     place(o, since, o->elsewhere);
     NAMED(nevh__series_in)(o->probe, o->unit);
@@ -191,8 +191,9 @@ static bool is_of_H(orbit *o, real since) {
     for (size_t i = 0; i < each; i++) {
         long double slope = lengthen(o->probed[each + i]);
         long double mine = slope_after(o, i, since);
+        long double least = o->most[i] > 0 ? part * o->tolerance : nothing;
         long double allowed =
-            alike * fmaxl(fabsl(mine), fabsl(slope)) + nothing * size_of(o, i);
+            alike * fmaxl(fabsl(mine), fabsl(slope)) + least * size_of(o, i);
         if (!(fabsl(mine - slope) <= allowed))
             return false;
     }
@@ -250,7 +251,7 @@ static int begin(orbit *o, real t, const real state[], nevh__report *report) {
     note_state(o, state);
     for (size_t i = 0; i < 2 * o->n; i++)
         o->seen[i] = fmax(o->seen[i], o->most[i]);
-    memcpy(o->start, state, 2 * o->n * sizeof *state);
+    memmove(o->start, state, 2 * o->n * sizeof *state);
     o->t = t;
     o->count++;
     if (!expand(o, t, state)) {
@@ -330,12 +331,31 @@ int NAMED(nevh__series_orbit_next)(orbit *o, real t, nevh__report *report) {
     return begin(o, next, o->state, report);
 }
 
+/* Expands the same series again, for a time that is far longer than its unit:
+   coefficients that were too small for numbers say nothing of that. */
+static int fit_unit(orbit *o, double since, nevh__report *report) {
+    o->count--;
+    take_unit(o, since);
+    return begin(o, o->t, o->start, report);
+}
+
 int NAMED(nevh__series_orbit_go)(orbit *o, real t, nevh__report *report) {
+    static const double far = 0x1p8; /* units */
     int status = NEVH_OK;
-    while (!status && FUNCTION(fabs)(t - o->t) > o->reach)
-        status = NAMED(nevh__series_orbit_next)(o, t, report);
-    if (!status)
-        evaluate(o, t - o->t);
+    size_t fitted = SIZE_MAX; /* the series */
+    for (bool there = false; !status && !there;) {
+        double left = fabs((double)(t - o->t));
+        double since = fmin(left, (double)o->reach);
+        if (since > far * o->unit && fitted != o->count) {
+            status = fit_unit(o, since, report);
+            fitted = o->count;
+        }
+        there = !status && !(FUNCTION(fabs)(t - o->t) > o->reach);
+        if (there)
+            evaluate(o, t - o->t);
+        else if (!status)
+            status = NAMED(nevh__series_orbit_next)(o, t, report);
+    }
     return status;
 }
 

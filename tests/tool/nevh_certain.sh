@@ -118,6 +118,60 @@ has '^60,p_x,,0,'
 awk -F, '$1 == 60 && $2 == "x" && $4 <= 8 { found = 1 } END { exit !found }' $work/out ||
     fails 'is certain of rounding'
 
+# Numbers that nearly cancel have no more digits than rounding leaves of them: where
+# they start an orbit, and where they are in H, before jumps too.  (sqrt(2)^2 - 2)*1e30 is
+# 0 in truth.
+digits() { awk -F, 'NR > 1 { print $4 }' $work/out | xargs; }
+scene start 'x = (sqrt(2)^2 - 2)*1e30, 1' 'p_x^2/2 + x^2/2'
+exits 0 reference $work/start.nevh --at 3 --format csv --quiet
+awk -F, 'NR > 1 && $4 > 4 { exit 1 }' $work/out || fails 'is certain of what cancels'
+exits 0 reference $work/start.nevh --at 3
+has 'difference of nearly equal numbers in the scene'
+for factor in 'log(1 + 1e-30)*1e30' '1 + (1 + 1e-34)^1e34' '1 + sin(1e30*pi)' \
+    '2 + sign(sin(pi))' '1 + max(0, sin(pi))*1e35' '1 + floor(1 - 1e-40)' \
+    '1e40 + 1 - 1e40 + 1' 'mod(3*(1/3), 1)' '1 + exp(50) - exp(50)*(1 + 1e-34)'; do
+    scene factor 'x = 0.3, 0' "p_x^2/2 + x^2/2*($factor)"
+    exits 0 reference $work/factor.nevh --at 3 --format csv --quiet
+    awk -F, 'NR > 1 && $4 > 12 { exit 1 }' $work/out || fails "is certain of $factor"
+done
+# By a parameter, and by one made of another.
+scene indirect 'x = 0.3, 0' 'p_x^2/2 + x^2/2*floor(a)'
+sed -i '1i [parameters]\nb = 1e-40\na = 1 - b' $work/indirect.nevh
+exits 0 reference $work/indirect.nevh --at 3 --format csv --quiet
+test "$(digits)" = '0 0' || fails 'is certain of a parameter that is rounded'
+# Contrast: what does not matter, or does not cancel, costs no digits.
+for factor in '1 + cos(pi/2)' '(sqrt(2) + 1/3)^2' 'floor(2.5)' '1 - 2^-40' 'sqrt(4) - 1' \
+    'mod(3, 2)' 'sign(-pi)*-1'; do
+    scene factor 'x = 0.3, 0' "p_x^2/2 + x^2/2*($factor)"
+    exits 0 reference $work/factor.nevh --at 3 --format csv --quiet
+    test "$(digits)" = '24 24' || fails "has too few digits of $factor"
+done
+scene start 'x = sin(pi), 1' 'p_x^2/2 + x^2/2'
+exits 0 reference $work/start.nevh --at 3 --format csv --quiet
+has '^3,x,0\.141120008059867222100745,24,'
+exits 2 reference $work/start.nevh --at '(sqrt(2)^2 - 2)*1e34'
+says 'nearly equal numbers leaves too few digits'
+
+# A force that is below all doubles where the orbit starts: x^12 from 0, in other units
+# (1e5*x)^12; and one that stays below them.
+scene twelve 'x = 0, 1e-30' 'p_x^2/2 + x^12'
+exits 0 reference $work/twelve.nevh --at 1e27 --format csv --quiet
+has '^1e\+?27,x,-6\.765622356903'
+scene scaled 'x = 0, 1' 'p_x^2/2 + (1e5*x)^12'
+exits 0 reference $work/scaled.nevh --at 1e-3 --format csv --quiet
+has '^0\.001[0-9]*,x,-6\.765622356903'
+scene sixty 'x = 0, 1e-30' 'p_x^2/2 + x^60'
+exits 0 reference $work/sixty.nevh --at 3e30 --digits 25 --format csv --quiet
+has ',x,0\.0335048317381948'
+scene free 'x = 0, 1e-65' 'p_x^2/2 + x^6/6'
+exits 0 reference $work/free.nevh --at 1e23 --format csv --quiet
+has ',x,9\.9999999999999983925[0-9]*e-43,24,'
+for start in '1e-307, 0' '1e-200, 0' '0, 1e-170'; do
+    scene tiny "x = $start" 'p_x^2/2 + x^2/2 + x^4/4'
+    exits 1 reference $work/tiny.nevh --at 3
+    says 'below 1e-308'
+done
+
 # What is refused.
 exits 2 reference pendulum --digits 31
 says '1 to 30'

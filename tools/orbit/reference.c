@@ -177,16 +177,16 @@ static void put_notes(const reference_job *j, page *result) {
         nevh_certain_series(j->orbit));
     list_add(&result->before,
              "numbers that are written, as 0.1, are the doubles nearest to "
-             "them, taken exactly; what is computed of them, and pi, has all "
-             "its digits");
+             "them, taken exactly; what is computed of them, and pi, has 113 "
+             "bits");
     if (nevh_scene_stops(p->scene))
         list_add(&result->before, "the stop of [run] is left aside");
     if (j->fewest == j->digits)
         return;
     list_print(&result->after,
                "From t = %.9g on at least %zu digits are certain, not all "
-               "that were asked for: the orbit amplifies differences in the "
-               "last digits.",
+               "that were asked for: the orbit, or a difference of nearly "
+               "equal numbers in the scene, amplifies what rounding leaves.",
                j->lost, j->fewest);
     if (!j->left)
         list_print(&result->after,
