@@ -57,13 +57,17 @@ static double size_of(const orbit *o, size_t i) {
     return o->most[i] > 0 ? o->most[i] : o->usual[i >= o->n];
 }
 
-static long double largest(const orbit *o, size_t order) {
+static long double largest_of(const orbit *o, size_t order, size_t half) {
     long double most = 0;
-    for (size_t i = 0; i < 2 * o->n; i++) {
+    for (size_t i = half * o->n; i < (half + 1) * o->n; i++) {
         long double x = lengthen(o->rows[order * 2 * o->n + i]);
         most = fmaxl(most, fabsl(x) / size_of(o, i));
     }
     return most;
+}
+
+static long double largest(const orbit *o, size_t order) {
+    return fmaxl(largest_of(o, order, 0), largest_of(o, order, 1));
 }
 
 /* Half the radius of convergence, as the last coefficients show it: those of a part
@@ -146,16 +150,33 @@ static void limit_by_time(orbit *o) {
 }
 
 /* True if series that get shorter and shorter mean the end of a solution, where the
-   state changes ever faster; at a branch point it does not. */
+   state changes ever faster and grows; at a branch point it does not, and before a thin
+   wall momenta get smaller. */
 static bool ends(const orbit *o) {
     static const double shrunk = 1e4, faster = 10;
     size_t now = o->count % NEVH__ORBIT_PAST;
+    size_t half = largest_of(o, 1, 1) >= largest_of(o, 1, 0); /* the faster */
     for (size_t i = 1; i < NEVH__ORBIT_PAST && i < o->count; i++) {
         size_t then = (o->count - i) % NEVH__ORBIT_PAST;
         if (o->held[then] > shrunk * o->held[now])
-            return o->speed[now] > faster * o->speed[then];
+            return o->speed[now] > faster * o->speed[then] &&
+                   o->extent[half][now] > o->extent[half][then];
     }
     return false;
+}
+
+/* Keeps the reach of this series, how fast it begins, and the sizes of coordinates and
+   of momenta. */
+static void note_past(orbit *o) {
+    size_t at = o->count % NEVH__ORBIT_PAST;
+    o->held[at] = (double)o->reach;
+    o->speed[at] = (double)(largest(o, 1) / o->unit);
+    for (size_t half = 0; half < 2; half++) {
+        double squares = 0;
+        for (size_t i = half * o->n; i < (half + 1) * o->n; i++)
+            squares += (double)(o->start[i] * o->start[i]);
+        o->extent[half][at] = sqrt(squares);
+    }
 }
 
 /* The state that a series has after a time. */
@@ -268,8 +289,7 @@ static int begin(orbit *o, real t, const real state[], nevh__report *report) {
     if (o->timing)
         limit_by_time(o);
     limit_by_convergence(o);
-    o->held[o->count % NEVH__ORBIT_PAST] = (double)o->reach;
-    o->speed[o->count % NEVH__ORBIT_PAST] = (double)(largest(o, 1) / o->unit);
+    note_past(o);
     return NEVH_OK;
 }
 

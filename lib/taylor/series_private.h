@@ -96,7 +96,8 @@ bool nevh__domain_may_jump(const nevh__recurrence *);
    SIZE_MAX: there is none. */
 size_t nevh__domain_kink(const nevh__recurrence *);
 #define NEVH__SERIES_EDGE                                                      \
-    "%s is not analytic there, and a series knows nothing of what follows"
+    "%s is not analytic there, as far as its digits tell, and a series knows " \
+    "nothing of what follows"
 /* "sqrt(...), whose argument reaches 0, in effect "V"" */
 void nevh__domain_words(const nevh__recurrence *, size_t edge, char text[],
                         size_t room);
