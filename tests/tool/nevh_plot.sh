@@ -194,6 +194,13 @@ says 'rk4 failed after t = '
 test "$(wc -l <$work/err)" = 1 || { fails "says more"; cat $work/err; }
 exits 1 run $work/fails.nevh --plot $svg --format csv
 test "$(wc -l <$work/err)" = 1 || { fails "says more"; cat $work/err; }
+# The axis of time ends where a stop ends all runs, and not where only some stop.
+printf '%s\n' '[coordinates]' 'y = 1, 3' '[effects]' 'kinetic = p_y^2/2' 'gravity = y' '[run]' \
+    't_end = 40' 'dt = 0.05' 'stop = y < 0' 'integrators = verlet, rk4' >$work/ball.nevh
+draws compare $work/ball.nevh --plot $svg --keep-plot-script $work/out.gp
+grep -q '^set xrange \[0:6\.3[0-9]*\]' $work/out.gp ||
+    { fails "has an axis beyond the stop"; grep '^set xrange' $work/out.gp; }
+texts | grep -q 't = 0 \.\.\. 6\.3' || fails "names another end"
 # Who reads the rows may stop reading.
 command="run | head"
 for what in run section compare; do

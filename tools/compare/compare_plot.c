@@ -58,16 +58,32 @@ static void note_failed(const plan *p, const row rows[], size_t count,
     }
 }
 
+/* The end of the axes: where the last run ended, if the scene's stop ended all. */
+static double last_end(const plan *p, const row rows[], size_t count) {
+    double last = nevh_scene_stops(p->scene) ? p->run->t_start : p->t_end;
+    for (size_t i = 0; i < count; i++) {
+        double end = isnan(rows[i].stopped) ? p->t_end : rows[i].t_end;
+        last = rows[i].ran && fabs(end - p->run->t_start) >
+                                  fabs(last - p->run->t_start)
+                   ? end
+                   : last;
+    }
+    return last;
+}
+
 int compare_plot(const options *o, const plan *p, const row rows[],
                  size_t count) {
     plot *to = NULL;
     size_t panels = 0;
+    plan shown = *p;
+    shown.t_end = last_end(p, rows, count);
     for (size_t i = 0; i < count; i++) {
         panels += begins(rows, i);
         if (!rows[i].ran || panels > MOST_PANELS)
             continue;
         if (begins(rows, i))
             begin_panel(&to, p, &rows[i]);
+        plot_span_x(to, p->run->t_start, shown.t_end);
         draw_row(to, p, &rows[i]);
     }
     if (!to) {
@@ -80,7 +96,7 @@ int compare_plot(const options *o, const plan *p, const row rows[],
     plot_same_ranges(to, INFINITY);
     char *more = energy_plot_words(p);
     note_failed(p, rows, count, &more);
-    plot_note_run(to, p, NULL, more);
+    plot_note_run(to, &shown, NULL, more);
     free(more);
     int status = plot_write(to, o);
     plot_free(to);
