@@ -35,8 +35,7 @@ NEVH_API const char *nevh_certain_message(const nevh_certain *);
 
 /* Goes to a time, on either side of t0; times in order cost least.
    returns  NEVH_OK; NEVH_EDOM where a series is not finite, NEVH_EFAILED where
-            they get too short to get there, or where states are below 1e-150 and
-            something of H is below 1e-308: then there is no state
+            they get too short to get there: then there is no state
    cost     of pendulums and planets some 0.1 ms for each time in which the
             orbit changes by itself; linear in the operations of H */
 NEVH_API int nevh_certain_go(nevh_certain *, double t);

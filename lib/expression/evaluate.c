@@ -52,6 +52,11 @@ bool nevh__expression_integer(nevh__scope *s, const nevh__expression *e,
                                       "number: rounding; write floor(... + "
                                       "0.5)",
                                 what, number);
+    if (e->form == NEVH__FORM_NUMBER && e->wide_number.value != number)
+        return nevh__scope_fail(s, NEVH_EINVAL, e,
+                                "%s is %g as a double and %.17g with more "
+                                "digits: write it as a number",
+                                what, number, (double)e->wide_number.value);
     if (fabs(number) > 0x1p53 || fabs(number) >= (double)LONG_MAX)
         return nevh__scope_fail(s, NEVH_EINVAL, e, "%s is %g: too large", what,
                                 number);

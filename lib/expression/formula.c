@@ -55,6 +55,7 @@ int nevh__tree_integer(const nevh__tree *tree, const nevh__names *names,
         return error->status;
     nevh__expression whole = {.form = NEVH__FORM_NUMBER,
                               .number = number,
+                              .wide_number = {number, 0},
                               .column = tree->root->column,
                               .length = tree->root->length};
     nevh__scope scope = {.error = error};

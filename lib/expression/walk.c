@@ -21,14 +21,8 @@ static int apply(nevh__walk *w, nevh__tape_operation operation, int a, int b) {
     return nevh__tape_apply(w->builder, operation, a, b);
 }
 
-static int walk_number(nevh__walk *w, nevh__wide value) {
-    double part[NEVH__WIDE_PARTS];
-    nevh__wide_split(value, part);
-    int node = nevh__tape_number(w->builder, part[0]);
-    for (int i = 1; w->exact && i < NEVH__WIDE_PARTS && part[i] != 0; i++)
-        node =
-            apply(w, NEVH__ADD, node, nevh__tape_number(w->builder, part[i]));
-    return node;
+static int walk_number(nevh__walk *w, double value) {
+    return nevh__tape_number(w->builder, value);
 }
 
 /* Room for one more element; false when memory is out. */
@@ -74,16 +68,32 @@ static int constant(nevh__walk *w, double value, const nevh__expression *at) {
                : nevh__tape_variable(w->builder, NEVH__C, (size_t)column);
 }
 
-static nevh__wide constant_of(const nevh__walk *w, nevh__rounded x) {
-    return w->away ? x.value + x.off : x.value;
+/* The parts of a constant, which is refused if it is too small to have them. */
+static void split_constant(nevh__walk *w, nevh__rounded x,
+                           const nevh__expression *at, double part[]) {
+    nevh__wide value = w->away ? nevh__rounded_away(x) : x.value;
+    nevh__wide_split(value, part);
+    nevh__wide left = nevh__wide_left(value, part);
+    if (left != 0 && (double)left == 0)
+        nevh__scope_fail(&w->scope, NEVH_EDOM, at,
+                         "this is too near to 0 for more digits than those of "
+                         "doubles");
+}
+
+static int walk_parts(nevh__walk *w, const nevh__expression *e) {
+    double part[NEVH__WIDE_PARTS];
+    split_constant(w, e->wide_number, e, part);
+    int node = walk_number(w, part[0]);
+    for (int i = 1; i < NEVH__WIDE_PARTS && part[i] != 0; i++)
+        node = apply(w, NEVH__ADD, node, walk_number(w, part[i]));
+    return node;
 }
 
 /* The same in parts, each of which may differ between instances. */
 static int wide_constant(nevh__walk *w, const nevh__expression *e) {
     double part[NEVH__WIDE_PARTS] = {0};
     if (noting(w))
-        nevh__wide_split(constant_of(w, nevh__expression_wide(&w->scope, e)),
-                         part);
+        split_constant(w, nevh__expression_wide(&w->scope, e), e, part);
     int node = constant(w, part[0], e);
     for (int i = 1; i < NEVH__WIDE_PARTS && !failed(w); i++) {
         int next = constant(w, part[i], e);
@@ -99,8 +109,7 @@ static int walk_constant(nevh__walk *w, const nevh__expression *e) {
         return constant(w, noting(w) ? nevh__expression_value(&w->scope, e) : 0,
                         e);
     nevh__scope_finite(&w->scope, e->number, e);
-    return walk_number(w,
-                       w->exact ? constant_of(w, e->wide_number) : e->number);
+    return w->exact ? walk_parts(w, e) : walk_number(w, e->number);
 }
 
 /* Variables. */

@@ -2,6 +2,8 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/wide_private.h"
 #include "expression/tape_private.h"
+#include <stdint.h>
+#include <string.h>
 #include "expression/tape_inside_private.h"
 #ifndef NEVH_QUADMATH
 #include "expression/tape_operations_private.h"
@@ -127,16 +129,108 @@ static bool is_exact(unsigned operation, nevh__wide a, nevh__wide b,
     }
 }
 
+typedef struct {
+    nevh__wide low, high;
+} wide_range;
+
+/* From which a function is defined for values that rounding alone has moved out of its
+   domain. */
+static wide_range domain_of(unsigned operation) {
+    switch (operation) {
+    case NEVH__SQRT:
+        return (wide_range){0, INFINITY};
+    case NEVH__ASIN:
+    case NEVH__ACOS:
+        return (wide_range){-1, 1};
+    case NEVH__ACOSH:
+        return (wide_range){1, INFINITY};
+    default:
+        return (wide_range){-INFINITY, INFINITY};
+    }
+}
+
+/* The ends of a range, and 0 if it is within: extremes and poles are there.
+   returns  how many */
+static int places_in(nevh__rounded x, wide_range domain, nevh__wide to[3]) {
+    to[0] = real_max(x.value - x.off, domain.low);
+    to[1] = real_min(x.value + x.off, domain.high);
+    to[2] = 0;
+    return x.off == 0 ? 1 : 2 + (to[0] < 0 && to[1] > 0);
+}
+
+/* True of a function whose extremes and jumps may be anywhere between. */
+static bool is_periodic(unsigned operation) {
+    return operation == NEVH__SIN || operation == NEVH__COS ||
+           operation == NEVH__TAN || operation == NEVH__BESSEL_J0 ||
+           operation == NEVH__BESSEL_J1;
+}
+
+static bool mod_jumps(nevh__rounded a, nevh__rounded b) {
+    nevh__wide low = (a.value - a.off) / (b.value + b.off),
+               high = (a.value + a.off) / (b.value - b.off);
+    return !(NEVH__F(floor)(low) == NEVH__F(floor)(high)) ||
+           !(NEVH__F(fabs)(high) * NEVH__WIDE_EPSILON < 1);
+}
+
+/* How far the arguments' roundings may move a result. */
+static nevh__wide moved_by_arguments(unsigned operation, nevh__rounded a,
+                                     nevh__rounded b, nevh__wide y) {
+    nevh__wide at_a[3], at_b[3], off = 0;
+    if (a.off == 0 && b.off == 0)
+        return 0;
+    if (is_periodic(operation) && !(a.off < 1))
+        return 2 + NEVH__F(fabs)(y);
+    if (operation == NEVH__MOD && mod_jumps(a, b))
+        return NEVH__F(fabs)(b.value) + b.off;
+    int n = places_in(a, domain_of(operation), at_a);
+    int m = places_in(b, domain_of(NEVH__ADD), at_b);
+    for (int i = 0; i < n * m; i++) {
+        nevh__wide by = NEVH__F(fabs)(
+            nevh__operation_wide(operation, at_a[i % n], at_b[i / n]) - y);
+        off = by == by ? real_max(off, by) : INFINITY;
+    }
+    return off;
+}
+
+/* A bound of what a function's own algorithm rounds. */
+static nevh__wide own_rounding(unsigned operation, nevh__wide a, nevh__wide b,
+                               nevh__wide y) {
+    if (is_exact(operation, a, b, y))
+        return 0;
+    nevh__wide size = NEVH__F(fabs)(y);
+    if (operation == NEVH__BESSEL_J0 || operation == NEVH__BESSEL_J1)
+        size = 4;
+    if (operation == NEVH__ECCENTRIC)
+        size = (size + NEVH__F(fabs)(a)) / (1 - b * NEVH__F(cos)(y));
+    return size * NEVH__WIDE_EPSILON;
+}
+
 nevh__rounded nevh__operation_rounded(unsigned operation, nevh__rounded a,
                                       nevh__rounded b) {
-    nevh__wide y = nevh__operation_wide(operation, a.value, b.value), off = 0;
-    for (int i = 0; i < 4 && (a.off > 0 || b.off > 0); i++) {
-        nevh__wide corner = nevh__operation_wide(
-            operation, i % 2 ? a.value + a.off : a.value - a.off,
-            i / 2 ? b.value + b.off : b.value - b.off);
-        off = real_max(NEVH__F(fabs)(corner - y), off);
-    }
-    if (!is_exact(operation, a.value, b.value, y))
-        off += NEVH__F(fabs)(y) * NEVH__WIDE_EPSILON;
-    return (nevh__rounded){y, off};
+    nevh__wide y = nevh__operation_wide(operation, a.value, b.value);
+    nevh__wide off = moved_by_arguments(operation, a, b, y) +
+                     own_rounding(operation, a.value, b.value, y);
+    bool known = y - y == 0 && off == off;
+    return (nevh__rounded){y, known ? off : INFINITY};
+}
+
+/* In [1, 16) or (-16, -1], by the digits of a number. */
+static nevh__wide factor_by(nevh__wide x) {
+    union {
+        nevh__wide x;
+        uint64_t word[(sizeof(nevh__wide) + 7) / 8];
+    } bits;
+    memset(&bits, 0, sizeof bits);
+    bits.x = x;
+    uint64_t hash = 0;
+    for (size_t i = 0; i < sizeof bits.word / sizeof *bits.word; i++)
+        hash = (hash ^ bits.word[i]) * 0x9E3779B97F4A7C15u, hash ^= hash >> 29;
+    double size = exp2((double)(hash >> 12 & 0xFFFF) * 0x1p-14);
+    return hash >> 60 & 1 ? size : -size;
+}
+
+nevh__wide nevh__rounded_away(nevh__rounded x) {
+    nevh__wide most = NEVH__F(fabs)(x.value) + 1;
+    nevh__wide off = x.off <= most ? x.off : most;
+    return off > 0 ? x.value + factor_by(x.value) * off : x.value;
 }

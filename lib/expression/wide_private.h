@@ -30,6 +30,9 @@ typedef struct {
     nevh__wide value, off;
 } nevh__rounded;
 nevh__rounded nevh__rounded_pi(void);
+/* The number as far away as rounding may have moved it, or some times as far; another
+   number is moved by another factor, of either sign. */
+nevh__wide nevh__rounded_away(nevh__rounded);
 nevh__rounded nevh__operation_rounded(unsigned operation, nevh__rounded a,
                                       nevh__rounded b);
 
@@ -41,6 +44,12 @@ static inline void nevh__wide_split(nevh__wide x,
         part[i] = (double)x;
         x -= part[i];
     }
+}
+/* What parts, which are doubles, have not of a number that is too small for them. */
+static inline nevh__wide nevh__wide_left(nevh__wide x, const double part[]) {
+    for (int i = 0; i < NEVH__WIDE_PARTS; i++)
+        x -= part[i];
+    return x;
 }
 
 #endif

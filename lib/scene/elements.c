@@ -40,17 +40,21 @@ bool nevh__is_elements(const nevh__piece *value) {
 #define ECCENTRIC(M, e) nevh__operation_wide(NEVH__ECCENTRIC, M, e)
 #include "scene/elements_text.h"
 
+/* Errors of elements add up; each is rounded when it is used, too. */
 static void place_rounded(const nevh__rounded x[], size_t member,
                           nevh__rounded *q, nevh__rounded *v) {
-    nevh__wide value[ELEMENTS], away[ELEMENTS], q_away, v_away;
-    for (size_t i = 0; i < ELEMENTS; i++) {
+    nevh__wide value[ELEMENTS], q_away, v_away;
+    for (size_t i = 0; i < ELEMENTS; i++)
         value[i] = x[i].value;
-        away[i] = x[i].value + x[i].off;
-    }
     wide_place(value, member, &q->value, &v->value);
-    wide_place(away, member, &q_away, &v_away);
-    q->off = NEVH__WIDE_FUNCTION(fabs)(q_away - q->value);
-    v->off = NEVH__WIDE_FUNCTION(fabs)(v_away - v->value);
+    q->off = v->off = 0;
+    for (size_t i = 0; i < ELEMENTS; i++) {
+        value[i] += x[i].off + x[i].value * (4 * NEVH__WIDE_EPSILON);
+        wide_place(value, member, &q_away, &v_away);
+        q->off += NEVH__WIDE_FUNCTION(fabs)(q_away - q->value);
+        v->off += NEVH__WIDE_FUNCTION(fabs)(v_away - v->value);
+        value[i] = x[i].value;
+    }
 }
 
 static bool elements_check(nevh_scene *s, const nevh__statement *one,

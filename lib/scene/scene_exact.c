@@ -35,7 +35,7 @@ int nevh_scene_exact_number(nevh_scene *s, const char *formula, double *number,
 }
 
 static nevh__wide number_of(const nevh__scene_model *m, nevh__rounded x) {
-    return m->exact->away ? x.value + x.off : x.value;
+    return m->exact->away ? nevh__rounded_away(x) : x.value;
 }
 
 #ifdef NEVH_QUADMATH
@@ -48,23 +48,37 @@ typedef struct {
     nevh__wide *state, *rows; /* 2n, 3 times 2n */
     nevh__wide *off;          /* of the velocities that are sought */
     size_t *row, count;       /* which momenta these are of */
+    double each;              /* how far these are, over themselves */
 } search;
 enum { ORDER = 2, ROUNDS = 6, MOST_ROWS = 500 };
 static const double solved = 1e-32, enough = 1e-30;
 
-/* The deviation of the velocities, over the largest of them. */
+/* The velocity that is sought: where the run is to differ by rounding, off by that of
+   dH/dp, so that momenta differ by what this means for them. */
+static nevh__wide sought(const search *s, size_t k) {
+    nevh__rounded v = s->m->exact->v[k];
+    v.off += 8 * fabsq(v.value) * NEVH__WIDE_EPSILON;
+    return number_of(s->m, v);
+}
+
+/* The deviation of the velocities, over the largest of them; s->each: each over its
+   own. */
 static double scene_exact_measure(search *s) {
     size_t n = s->m->n;
+    static const double least = 1e-30; /* of a velocity of 0 */
     double most = 0, size = 0;
+    s->each = 0;
     if (!nevh__series_expand_quad(s->series,
                                   number_of(s->m, s->m->exact->t_start),
                                   s->state, s->rows))
-        return INFINITY;
+        return s->each = INFINITY;
     for (size_t j = 0; j < s->count; j++) {
-        size_t k = s->row[j];
-        s->off[j] = number_of(s->m, s->m->exact->v[k]) - s->rows[2 * n + k];
-        most = fmax(most, fabs((double)s->off[j]));
-        size = fmax(size, fabs((double)s->m->exact->v[k].value));
+        nevh__wide v = sought(s, s->row[j]);
+        s->off[j] = v - s->rows[2 * n + s->row[j]];
+        double off = fabs((double)s->off[j]), own = fabs((double)v);
+        most = fmax(most, off);
+        size = fmax(size, own);
+        s->each = fmax(s->each, off == 0 ? 0 : off / fmax(own, least));
     }
     return most > 0 ? most / (size > 0 ? size : 1) : 0;
 }
@@ -72,18 +86,18 @@ static double scene_exact_measure(search *s) {
 /* Each momentum by its own velocity, which is in proportion to it. */
 static double scene_exact_rescale(search *s) {
     size_t n = s->m->n;
-    double off = scene_exact_measure(s);
-    for (int i = 0; i < ROUNDS && off > solved; i++) {
+    double off = scene_exact_measure(s), each = s->each;
+    for (int i = 0; i < ROUNDS && each > solved; i++) {
         for (size_t j = 0; j < s->count; j++) {
             size_t k = s->row[j];
             nevh__wide has = s->rows[2 * n + k];
             if (has != 0)
                 s->state[n + k] += s->off[j] * (s->state[n + k] / has);
         }
-        double now = scene_exact_measure(s);
-        if (!(now < off))
-            return now;
-        off = now;
+        off = scene_exact_measure(s);
+        if (!(s->each < each))
+            break;
+        each = s->each;
     }
     return off;
 }
@@ -113,7 +127,7 @@ static double scene_exact_iterate(search *s, double slope[], size_t pivot[],
     double off = scene_exact_measure(s);
     if (!nevh__factor(s->count, slope, pivot))
         return off;
-    for (int i = 0; i < ROUNDS && off > solved; i++) {
+    for (int i = 0; i < ROUNDS && s->each > solved; i++) {
         for (size_t j = 0; j < s->count; j++)
             x[j] = (double)s->off[j];
         nevh__solve(s->count, slope, pivot, x);
@@ -142,7 +156,7 @@ static int solve_together(search *s, double *off) {
 
 static int scene_exact_solve(nevh_scene *scene, search *s) {
     double off = scene_exact_rescale(s);
-    if (off > solved && s->count <= MOST_ROWS && solve_together(s, &off))
+    if (s->each > solved && s->count <= MOST_ROWS && solve_together(s, &off))
         return nevh__scene_no_memory(scene), NEVH_ENOMEM;
     if (off <= enough)
         return NEVH_OK;

@@ -30,6 +30,7 @@ struct nevh_certain {
     const volatile sig_atomic_t *ending;  /* or NULL */
     double at, parted; /* times since t0: now, and when both were far apart; the
                            latter INFINITY: never */
+    bool underflows, lost; /* something was below the doubles, and matters */
     const nevh_system *system;
     nevh_timing *timing; /* from t0 until `seen`; NULL: H reads no time */
     double seen;
@@ -118,6 +119,7 @@ static int start_both(nevh_certain *c, bool pairs) {
     /* Errors of some hundred series add up. */
     double tolerance = pow(10, -c->digits - 4), finest = 2e-33;
     round_start(c, pairs);
+    feclearexcept(FE_UNDERFLOW);
     int status =
         certain_start(c, &c->coarse, pairs, fmax(tolerance, 10 * finest));
     if (status)
@@ -125,7 +127,9 @@ static int start_both(nevh_certain *c, bool pairs) {
     shorten_first(&c->coarse);
     c->at = 0;
     c->parted = INFINITY;
-    return certain_start(c, &c->fine, pairs, fmax(tolerance / 30, finest));
+    status = certain_start(c, &c->fine, pairs, fmax(tolerance / 30, finest));
+    c->underflows = fetestexcept(FE_UNDERFLOW) != 0;
+    return status;
 }
 
 /* The start, and the same for the coarse run; false: memory is out. */
@@ -225,9 +229,15 @@ static double apart(const nevh_certain *c, size_t k) {
 
 static bool any_is_far(const nevh_certain *c, size_t from) {
     static const double far = 0.05; /* of what a variable was at most */
+    static const double tiny =
+        1e-25; /* of the largest: rounding, as of sin(pi) */
+    double largest = 0;
     bool found = false;
     for (size_t k = from; k < from + c->n; k++)
-        found = found || apart(c, k) > far * most(&c->fine, k);
+        largest = fmax(largest, most(&c->fine, k));
+    for (size_t k = from; k < from + c->n; k++)
+        found = found || (apart(c, k) > far * most(&c->fine, k) &&
+                          most(&c->fine, k) > tiny * largest);
     return found;
 }
 
@@ -247,35 +257,35 @@ static nevh__wide next_look(const nevh_certain *c, nevh__wide t) {
     return near ? t : t > now ? now + by : now - by;
 }
 
-/* The smallest state, as a part of the largest factor that it is multiplied by. */
-static double smallest(const nevh_certain *c) {
-    double least = INFINITY,
-           factor = c->fine.pairs ? c->fine.dd.unit : c->fine.quad.unit;
+/* The largest number that a state, or what is made of it, is multiplied by. */
+static double largest_factor(const nevh_certain *c) {
+    const orbit *o = &c->fine;
+    nevh__wide t = c->t0 + c->at;
+    double most = fmax(1, o->pairs ? o->dd.unit : o->quad.unit);
     for (size_t i = 0; i < c->recurrence->n_numbers; i++)
-        factor = fmax(factor, fabs((double)c->recurrence->numbers[i]));
-    for (size_t k = 0; k < 2 * c->n; k++)
-        if (most(&c->fine, k) > 0)
-            least = fmin(least, most(&c->fine, k));
-    return least / fmax(factor, 1);
+        most = fmax(most, fabs((double)c->recurrence->numbers[i]));
+    return fmax(most, o->pairs ? nevh__series_largest_dd(
+                                     o->dd.probe, t, o->dd.state, o->dd.probed)
+                               : nevh__series_largest_quad(o->quad.probe, t,
+                                                           o->quad.state,
+                                                           o->quad.probed));
 }
 
-/* Sums are of doubles, which end at 1e-308: what is lost there may be all that there is
-   of a force, where states are small. */
-static int check_range(nevh_certain *c) {
-    static const double small = 1e-150;
-    if (!fetestexcept(FE_UNDERFLOW) || !(smallest(c) < small))
-        return NEVH_OK;
-    return nevh__fail(&c->report, NEVH_EFAILED,
-                      "near t = %.9g numbers are below 1e-308, where they lose "
-                      "their digits: measure lengths and times in smaller "
-                      "units",
-                      (double)(c->t0 + c->at));
+/* True if what is below 1e-308, where doubles end, may be all that there is of a force,
+   as states are small or factors large. */
+static bool is_lost(nevh_certain *c) {
+    static const double enough = 1e-260;
+    double least = INFINITY;
+    for (size_t k = 0; c->underflows && k < 2 * c->n; k++)
+        if (most(&c->fine, k) > 0)
+            least = fmin(least, most(&c->fine, k));
+    return c->underflows && !(least / largest_factor(c) > enough);
 }
 
 static int go_both(nevh_certain *c, nevh__wide t) {
     int status = NEVH_OK;
-    feclearexcept(FE_UNDERFLOW);
     for (bool there = false; !status && !there;) {
+        feclearexcept(FE_UNDERFLOW);
         nevh__wide next = next_look(c, t);
         there = next == t;
         status = go(c, &c->coarse, next);
@@ -284,9 +294,9 @@ static int go_both(nevh_certain *c, nevh__wide t) {
         c->at = (double)(next - c->t0);
         if (!status && have_parted(c))
             c->parted = fmin(c->parted, fabs(c->at));
-        if (!status)
-            status = check_range(c);
+        c->underflows |= fetestexcept(FE_UNDERFLOW) != 0;
     }
+    c->lost = !status && is_lost(c);
     return status;
 }
 
@@ -388,7 +398,9 @@ double nevh_certain_error(const nevh_certain *c, size_t k) {
     double once = c->fine.pairs ? rounding_of_pairs : rounding;
     double size = fmax(most(&c->fine, k), term(&c->fine, k));
     double floor = once * sqrt((double)certain_count(&c->fine)) * size;
-    if (fabs(c->at) >= c->parted)
+    if (c->underflows)
+        floor = fmax(floor, DBL_MIN);
+    if (fabs(c->at) >= c->parted || c->lost)
         floor = 2 * most(&c->fine, k);
     return fmax(2 * apart(c, k), floor);
 }

@@ -173,7 +173,9 @@ size_t nevh__domain_edge(const nevh__recurrence *r, const double rows[],
 }
 
 bool nevh__domain_is_closed(const nevh__recurrence *r, size_t edge) {
-    return edge != SIZE_MAX && r->edges[edge].function == NEVH__CBRT;
+    return edge != SIZE_MAX &&
+           (r->edges[edge].function == NEVH__CBRT ||
+            nevh__operation_of(r->edges[edge].function)->jumps);
 }
 
 size_t nevh__domain_kink(const nevh__recurrence *r) {

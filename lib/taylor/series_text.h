@@ -8,6 +8,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "taylor/number_text.h"
 #include "taylor/series_private.h"
+#include <math.h>
 #include <stdlib.h>
 
 struct NAMED(nevh__series) {
@@ -316,4 +317,13 @@ bool NAMED(nevh__series_expand)(series *s, real t, const real state[],
     for (size_t i = 0; i < each; i++)
         bad = plus(bad, minus(last[i], last[i]));
     return widen(bad) == 0;
+}
+
+double NAMED(nevh__series_largest)(series *s, real t, const real state[],
+                                   number row[]) {
+    double most = 0;
+    begin(s, t, state, row);
+    for (size_t i = 0; i < s->of->values; i++)
+        most = fmax(most, fabs(shorten(s->value[i])));
+    return most;
 }

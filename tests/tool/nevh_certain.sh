@@ -166,11 +166,63 @@ has ',x,0\.0335048317381948'
 scene free 'x = 0, 1e-65' 'p_x^2/2 + x^6/6'
 exits 0 reference $work/free.nevh --at 1e23 --format csv --quiet
 has ',x,9\.9999999999999983925[0-9]*e-43,24,'
-for start in '1e-307, 0' '1e-200, 0' '0, 1e-170'; do
-    scene tiny "x = $start" 'p_x^2/2 + x^2/2 + x^4/4'
-    exits 1 reference $work/tiny.nevh --at 3
-    says 'below 1e-308'
+scene tiny 'x = 1e-307, 0' 'p_x^2/2 + x^2/2'
+exits 0 reference $work/tiny.nevh --at 3
+has 'numbers below 1e-308 have lost theirs'
+exits 0 reference $work/tiny.nevh --at 3 --format csv --quiet
+test "$(digits)" = '0 0' || fails 'is certain of what underflows'
+scene tiny 'x = 1e-200, 0' 'p_x^2/2 + x^4/4'
+exits 0 reference $work/tiny.nevh --at 1e201 --format csv --quiet
+test "$(digits)" = '0 0' || fails 'is certain of what underflows'
+scene tiny 'x = 1\ny = 800\nz = 700' 'p_x^2/2 + x*exp(-y)*exp(z)'
+exits 0 reference $work/tiny.nevh --at 1 --format csv --quiet
+awk -F, '$2 == "p_x" && $4 > 0 { exit 1 }' $work/out || fails 'is certain of what underflows'
+# Contrast: what underflows beside it does not matter.
+scene tiny 'x = 1e-200, 0' 'p_x^2/2 + x^2/2 + x^4/4'
+exits 0 reference $work/tiny.nevh --at 3 --format csv --quiet
+has '^3,x,-9\.899924966004454[0-9]*e-201,24,'
+scene pulse 'x = 0' 'p_x^2/2 - x*exp(-(t - 20)^2)'
+exits 0 reference $work/pulse.nevh --at 40 --format csv --quiet
+has '^40,p_x,1\.772453850905516027298[0-9]*,24,'
+
+# Numbers that differ, though their roundings are alike: sqrt(2) and sqrt(2 + 1e-15).
+printf '%s\n' '[parameters]' 'a = sqrt(2)' 'b = sqrt(2.000000000000001)' '[coordinates]' \
+    'x = 1' '[effects]' 'H = p_x^2/2 + a*x - b*x' >$work/alike.nevh
+exits 0 reference $work/alike.nevh --at 1 --format csv --quiet
+has '^1,p_x,3\.1401849173675497[67][0-9]*e-16,'
+awk -F, '$2 == "p_x" && $4 > 19 { exit 1 }' $work/out || fails 'has digits of a difference'
+# Jumps and extremes that lie between the ends of what rounding leaves.
+for start in 'mod(exp(80), 1)' 'cos(2*pi*mod(2^114*pi, 1))' 'exp(-(1e36*(sqrt(2)^2 - 2))^2)' \
+    '1/cosh(1e37*(sqrt(2)^2 - 2))'; do
+    scene hidden "x = $start" 'p_x^2/2'
+    exits 0 reference $work/hidden.nevh --at 1 --format csv --quiet
+    awk -F, '$2 == "x" && $4 > 0 { exit 1 }' $work/out || fails "is certain of $start"
 done
+# Momenta of velocities that differ by many powers of ten, and that hardly depend on them.
+scene speeds 'x = 0\ny = 0\nv_x = 1\nv_y = 1e-17' 'p_x^2/2 + 3*p_y^2/2'
+exits 0 reference $work/speeds.nevh --at 1 --format csv --quiet
+has '^1,p_y,3\.33333333333333357180808e-18,24,'
+scene fast 'x = 0\nv_x = 0.99999999999999' 'sqrt(1 + p_x^2)'
+exits 0 reference $work/fast.nevh --at 1 --format csv --quiet
+has '^1,p_x,7073895\.38088254651'
+awk -F, '$2 == "p_x" && $4 > 21 { exit 1 }' $work/out || fails 'has digits of a steep momentum'
+# A node that is rounding takes no digits from the rest; two times that are one double.
+scene node 'x = 1, 0\ny = sin(pi), 0' 'p_x^2/2 + p_y^2/2 + x^2/2 + y^2/2'
+exits 0 reference $work/node.nevh --at 1 --format csv --quiet
+has '^1,x,0\.54030230586813971740093[67],24,'
+scene free 'x = 0, 1e10' 'p_x^2/2'
+exits 0 reference $work/free.nevh --at '1/3,1/3+1e-18' --format csv --quiet
+has ',x,3333333333\.33333333333333,'
+has ',x,3333333333\.33333334333333,'
+# One number for all: a range that doubles and more digits give differently is refused.
+printf '%s\n' '[parameters]' 'N = floor(0.7*10)' '[coordinates]' 'x = 1' '[effects]' \
+    'H = p_x^2/2 + sum(i = 1..N, x^2)/2' >$work/range.nevh
+exits 2 reference $work/range.nevh --at 1
+says '7 as a double and 6 with more digits'
+# A force that jumps in time ends no solution.
+scene jumps 'x = 1, 0' 'p_x^2/2 + x*floor(t + 0.5)'
+exits 1 reference $work/jumps.nevh --at 1
+grep -q 'solution itself' $work/err && fails 'ends a solution at a jump'
 
 # What is refused.
 exits 2 reference pendulum --digits 31

@@ -25,6 +25,7 @@ typedef struct {
     double lost;           /* the first time with fewer; NAN */
     size_t left;           /* the fewest then */
     double t, part;        /* where the orbit is; what to go at once */
+    long double rest;      /* it is at t + rest */
     double end;
     moment *moments; /* times that are asked for, in order */
     size_t count;
@@ -137,14 +138,16 @@ static int refuse(const reference_job *j, double t) {
 
 /* In parts of a tenth of a second or so; the orbit does not depend on them. */
 static int go(reference_job *j, moment at) {
-    bool there = j->t >= at.time;
+    bool there = j->t > at.time || (j->t == at.time && j->rest >= at.rest);
     while (!there) {
         double before = cpu_seconds(), next = fmin(j->t + j->part, at.time);
-        next = next > j->t ? next : nextafter(j->t, at.time);
+        if (next <= j->t && j->t < at.time)
+            next = nextafter(j->t, at.time);
         there = next == at.time;
         if (nevh_certain_go_to(j->orbit, next, there ? at.rest : 0))
             return refuse(j, at.time);
         j->t = next;
+        j->rest = there ? at.rest : 0;
         j->part *= cpu_seconds() - before < 0.1 ? 2 : 0.5;
         show_progress(j);
         int status = check_budget(j);
@@ -186,7 +189,8 @@ static void put_notes(const reference_job *j, page *result) {
     list_print(&result->after,
                "From t = %.9g on at least %zu digits are certain, not all "
                "that were asked for: the orbit, or a difference of nearly "
-               "equal numbers in the scene, amplifies what rounding leaves.",
+               "equal numbers in the scene, amplifies what rounding leaves, "
+               "or numbers below 1e-308 have lost theirs.",
                j->lost, j->fewest);
     if (!j->left)
         list_print(&result->after,
