@@ -286,9 +286,18 @@ plot_screen plot_screen_of(const plot *p, size_t number, const layout *l) {
                          l->panel_width, l->panel_height, 0};
 }
 
+/* The fewest letters a line that take no more lines: no line is of one word. */
+static size_t balanced(const char *text, size_t letters, size_t lines) {
+    while (letters > 1 && lines > 1 &&
+           lines_of(text, letters - 1, lines + 1) <= lines)
+        letters--;
+    return letters;
+}
+
 static text_line *add_lines(text_line *to, const char *text, size_t letters,
                             size_t lines, double first, double apart,
                             double size) {
+    letters = balanced(text, letters, lines);
     for (size_t i = 0; i < lines; i++) {
         size_t bytes = line_bytes(text, letters);
         *to++ = (text_line){text, bytes, i + 1 == lines && text[bytes],
