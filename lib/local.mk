@@ -139,7 +139,7 @@ libnevh_core_la_SOURCES = \
 	lib/taylor/dd_orbit.c \
 	lib/taylor/long_orbit.c \
 	lib/taylor/certain_private.h \
-	lib/taylor/certain.c \
+	lib/taylor/certain.c lib/taylor/certain_absent.c \
 	lib/work/pace.h \
 	lib/work/work_private.h \
 	lib/work/work.c \
@@ -319,7 +319,7 @@ libnevh_core_la_SOURCES = \
 	lib/scene/variant_lanes.c \
 	lib/scene/solve.c \
 	lib/scene/sweep.c \
-	lib/scene/sweep_keep.c \
+	lib/scene/sweep_keep.c lib/scene/sweep_own.c \
 	lib/scene/binding.c \
 	lib/scene/sweep_window.c \
 	lib/scene/sweep_workers.c \

@@ -52,7 +52,7 @@ NEVH_API size_t nevh_certain_series(const nevh_certain *);
 /* Results at the present time: of coordinate k for k < n, else of momentum k - n. */
 /* The value as a double; NAN out of range. */
 NEVH_API double nevh_certain_value(const nevh_certain *, size_t k);
-/* A bound of the error of all digits: twice the difference of the two runs, or
+/* A bound of the error of all digits: eight times the difference of the two runs, or
    rounding. */
 NEVH_API double nevh_certain_error(const nevh_certain *, size_t k);
 /* The largest value so far, at the starts of series and within them. */

@@ -37,7 +37,7 @@ NEVH_API bool nevh_scene_varies(const nevh_scene *, const char *name);
 NEVH_API int nevh_scene_member_start(nevh_scene *, uint64_t member, double q[],
                                      double p[]);
 
-/* Options of a sweep; zeros are the defaults. */
+/* Options of a sweep; zeros are the defaults, and of the scene's own orbit. */
 typedef struct {
     const nevh_integrator *integrator;
     bool transformed;              /* by the scene's transform of time */
@@ -54,6 +54,17 @@ typedef struct {
     const char *native_cache; /* the same; borrowed while the sweep lives */
     size_t substeps;          /* of nevh_respa; 0: the scene's */
 } nevh_sweep_options;
+
+/* Outcomes of the scene's own orbit, from where it starts.
+   values   out, count of them: of the scene's outcomes, or of what
+            nevh_scene_set_outcomes has set; NAN where unknown, such as the period
+            of what never returns
+   returns  NEVH_OK; a status with a message of the scene: NEVH_EINVAL where there
+            are not `count` outcomes, the refusal of the scheme, or the status of
+            the step that failed
+   cost     that of planning two steppers and of one run */
+NEVH_API int nevh_scene_own_outcomes(nevh_scene *, const nevh_sweep_options *,
+                                     double values[], size_t count);
 
 /* A sweep over the members of a scene.  Member i is a function of the scene's
    text, of what was set from outside, of the seed and of i alone; so is its

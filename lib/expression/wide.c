@@ -172,7 +172,7 @@ static bool mod_jumps(nevh__rounded a, nevh__rounded b) {
            !(NEVH__F(fabs)(high) * NEVH__WIDE_EPSILON < 1);
 }
 
-/* How far the arguments' roundings may move a result. */
+/* The largest change of a result by its arguments' roundings. */
 static nevh__wide moved_by_arguments(unsigned operation, nevh__rounded a,
                                      nevh__rounded b, nevh__wide y) {
     nevh__wide at_a[3], at_b[3], off = 0;

@@ -45,7 +45,7 @@ static inline void nevh__wide_split(nevh__wide x,
         x -= part[i];
     }
 }
-/* What parts, which are doubles, have not of a number that is too small for them. */
+/* The rest of a number that is too small for its parts, which are doubles. */
 static inline nevh__wide nevh__wide_left(nevh__wide x, const double part[]) {
     for (int i = 0; i < NEVH__WIDE_PARTS; i++)
         x -= part[i];

@@ -102,8 +102,8 @@ static int try(nevh_sweep *s) {
     return s->report.status;
 }
 
-nevh_sweep *nevh_sweep_new(nevh_scene *scene,
-                           const nevh_sweep_options *options) {
+nevh_sweep *nevh__sweep_make(nevh_scene *scene,
+                             const nevh_sweep_options *options, bool own) {
     nevh_sweep *s = scene ? nevh__array(1, sizeof *s) : NULL;
     if (!s)
         return NULL;
@@ -116,7 +116,7 @@ nevh_sweep *nevh_sweep_new(nevh_scene *scene,
     int status = NEVH_OK;
     if (!scene->model)
         status = nevh__fail(&s->report, scene->status, "%s", scene->message);
-    else if (!s->ensemble->n_varied)
+    else if (!own && !s->ensemble->n_varied)
         status = nevh__fail(&s->report, NEVH_EINVAL,
                             "nothing is varied: give [ensemble] a line such "
                             "as %s = range(0, 1, 11)",
@@ -129,6 +129,11 @@ nevh_sweep *nevh_sweep_new(nevh_scene *scene,
         return s;
     nevh_sweep_free(s);
     return NULL;
+}
+
+nevh_sweep *nevh_sweep_new(nevh_scene *scene,
+                           const nevh_sweep_options *options) {
+    return nevh__sweep_make(scene, options, false);
 }
 
 void nevh_sweep_free(nevh_sweep *s) {

@@ -58,6 +58,10 @@ struct nevh_sweep {
     volatile sig_atomic_t ending;
 };
 
+/* As nevh_sweep_new.  own: of the scene's own orbit, where nothing need be varied. */
+nevh_sweep *nevh__sweep_make(nevh_scene *, const nevh_sweep_options *,
+                             bool own);
+
 /* variant.c.  varied: of a member; NULL: the scene as it is. */
 bool nevh__variant_make(nevh_sweep *, const double varied[], nevh__variant *,
                         nevh__report *);

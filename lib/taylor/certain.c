@@ -28,8 +28,9 @@ struct nevh_certain {
     nevh__recurrence *recurrence, *other; /* other: of the coarse run */
     orbit fine, coarse;                   /* both of pairs, or neither */
     const volatile sig_atomic_t *ending;  /* or NULL */
-    double at, parted; /* times since t0: now, and when both were far apart; the
-                           latter INFINITY: never */
+    double at, parted,
+        renewed;           /* times since t0: now; when both were far apart,
+                                   INFINITY: never; when the coarse run began anew */
     bool underflows, lost; /* something was below the doubles, and matters */
     const nevh_system *system;
     nevh_timing *timing; /* from t0 until `seen`; NULL: H reads no time */
@@ -42,6 +43,8 @@ struct nevh_certain {
 
 /* So many digits pairs may do for. */
 enum { DIGITS_OF_PAIRS = 24 };
+/* The difference of two runs may be small by chance where rounding dominates. */
+static const double amplified = 8;
 /* Rounding alone, of a series: inner sums have 106 bits, pairs 104 or so. */
 static const double rounding = 1e-32, rounding_of_pairs = 1e-31;
 
@@ -59,6 +62,10 @@ static int certain_start(nevh_certain *c, orbit *o, bool pairs,
     bool fine = o->pairs
                     ? nevh__series_orbit_init_dd(&o->dd, of, tolerance)
                     : nevh__series_orbit_init_quad(&o->quad, of, tolerance);
+    if (fine && is_other && pairs)
+        nevh__series_away_dd(o->dd.series, ldexp(1, -102));
+    else if (fine && is_other)
+        nevh__series_away_quad(o->quad.series, ldexp(1, -111));
     o->dd.timing = o->quad.timing = c->timing;
     o->dd.ending = o->quad.ending = c->ending;
     o->dd.backward = o->quad.backward = c->seen < (double)c->t0;
@@ -94,16 +101,6 @@ static size_t certain_count(const orbit *o) {
     return o->pairs ? o->dd.count : o->quad.count;
 }
 
-/* The first coefficients, and what rounding did to them, are those of the other
-   run: so that this does not go unseen, the series is left earlier. */
-static void shorten_first(orbit *o) {
-    o->dd.stops = o->quad.stops = false;
-    if (o->pairs)
-        o->dd.reach /= 2;
-    else
-        o->quad.reach /= 2;
-}
-
 /* Steps alone round nothing at an equilibrium, such as x = pi. */
 static void round_start(nevh_certain *c, bool pairs) {
     nevh__wide by = ldexp(1, pairs ? -103 : -110);
@@ -124,7 +121,6 @@ static int start_both(nevh_certain *c, bool pairs) {
         certain_start(c, &c->coarse, pairs, fmax(tolerance, 10 * finest));
     if (status)
         return status;
-    shorten_first(&c->coarse);
     c->at = 0;
     c->parted = INFINITY;
     status = certain_start(c, &c->fine, pairs, fmax(tolerance / 30, finest));
@@ -282,13 +278,38 @@ static bool is_lost(nevh_certain *c) {
     return c->underflows && !(least / largest_factor(c) > enough);
 }
 
+/* Begins new series of the coarse run on the way, at first from where its state is off
+   by rounding: those of the start, and what rounding did to them, are the other run's. */
+static int part_from_fine(nevh_certain *c, nevh__wide t) {
+    static const double part = 0.5;
+    orbit *o = &c->coarse;
+    nevh__wide from = c->at == 0 ? c->t0_away : c->t0 + c->at;
+    nevh__wide to = from + (t - from) * part;
+    nevh__wide by = c->at == 0 ? ldexp(1, o->pairs ? -104 : -111) : 0;
+    int status = go(c, o, to);
+    nevh__wide *state = o->pairs ? o->dd.state : o->quad.state;
+    for (size_t k = 0; !status && k < 2 * c->n; k++)
+        state[k] *= k % 2 ? 1 + by : 1 - by;
+    c->renewed = fabs((double)(t - c->t0));
+    if (!status)
+        status = o->pairs ? nevh__series_orbit_start_dd(&o->dd, to, state,
+                                                        &c->report)
+                          : nevh__series_orbit_start_quad(&o->quad, to, state,
+                                                          &c->report);
+    return status;
+}
+
 static int go_both(nevh_certain *c, nevh__wide t) {
+    static const double later = 8;
     int status = NEVH_OK;
     for (bool there = false; !status && !there;) {
         feclearexcept(FE_UNDERFLOW);
         nevh__wide next = next_look(c, t);
         there = next == t;
-        status = go(c, &c->coarse, next);
+        if (c->at == 0 || fabs((double)(next - c->t0)) > later * c->renewed)
+            status = part_from_fine(c, next);
+        if (!status)
+            status = go(c, &c->coarse, next);
         if (!status)
             status = go(c, &c->fine, next);
         c->at = (double)(next - c->t0);
@@ -374,10 +395,21 @@ int nevh_certain_go_to(nevh_certain *c, double time, long double rest) {
     int status = look_ahead(c, (double)t);
     if (!status)
         status = go_both(c, t);
-    if (status || !c->fine.pairs || !lacks_digits(c))
-        return status;
-    status = start_both(c, false);
-    return status ? status : go_both(c, t);
+    bool ended = c->ending && *c->ending;
+    bool again = c->fine.pairs && !ended && (status || lacks_digits(c));
+    if (again) {
+        c->report = (nevh__report){0};
+        status = start_both(c, false);
+        status = status ? status : go_both(c, t);
+    }
+    static const char unknown[] = "the series at"; /* NEVH__SERIES_NOT_FINITE */
+    bool unclear = strncmp(c->report.text, unknown, sizeof unknown - 1) == 0;
+    return status && unclear && c->underflows
+               ? nevh__fail(&c->report, NEVH_EDOM,
+                            "there is no series near t = %.9g: numbers are "
+                            "below 1e-308",
+                            (double)(c->t0 + c->at))
+               : status;
 }
 
 size_t nevh_certain_series(const nevh_certain *c) {
@@ -402,7 +434,7 @@ double nevh_certain_error(const nevh_certain *c, size_t k) {
         floor = fmax(floor, DBL_MIN);
     if (fabs(c->at) >= c->parted || c->lost)
         floor = 2 * most(&c->fine, k);
-    return fmax(2 * apart(c, k), floor);
+    return fmax(amplified * apart(c, k), floor);
 }
 
 double nevh_certain_size(const nevh_certain *c, size_t k) {
@@ -440,84 +472,9 @@ char *nevh_certain_number(double number, long double rest) {
     return text;
 }
 
-#else
-
-struct nevh_certain {
-    nevh__report report;
-};
-
-nevh_certain *nevh__certain_from(const nevh__certain_start *from,
-                                 const nevh__certain_start *other, int digits) {
-    nevh_certain *c = from->system ? nevh__array(1, sizeof *c) : NULL;
-    (void)other, (void)digits;
-    if (c)
-        nevh__fail(&c->report, NEVH_ESTRUCT,
-                   "this nevh was built without libquadmath, which comes with "
-                   "GCC, and has no digits beyond those of doubles");
-    return c;
-}
-
-nevh_certain *nevh_certain_new(const nevh_system *system, double t0,
-                               const double q[], const double p[], int digits) {
-    (void)t0, (void)q, (void)p;
-    nevh__certain_start from = {.system = system};
-    return nevh__certain_from(&from, &from, digits);
-}
-
-void nevh_certain_free(nevh_certain *c) {
-    free(c);
-}
-
-void nevh_certain_stop_at(nevh_certain *c,
-                          const volatile sig_atomic_t *ending) {
-    (void)c, (void)ending;
-}
-
-int nevh_certain_go_to(nevh_certain *c, double time, long double rest) {
-    (void)time, (void)rest;
-    return nevh_certain_status(c);
-}
-
-size_t nevh_certain_series(const nevh_certain *c) {
-    (void)c;
-    return 0;
-}
-
-double nevh_certain_value(const nevh_certain *c, size_t k) {
-    (void)c, (void)k;
-    return NAN;
-}
-
-double nevh_certain_error(const nevh_certain *c, size_t k) {
-    (void)c, (void)k;
-    return NAN;
-}
-
-double nevh_certain_size(const nevh_certain *c, size_t k) {
-    (void)c, (void)k;
-    return NAN;
-}
-
-int nevh_certain_digits(const nevh_certain *c, size_t k) {
-    (void)c, (void)k;
-    return 0;
-}
-
-char *nevh_certain_text(const nevh_certain *c, size_t k) {
-    (void)c, (void)k;
-    return NULL;
-}
-
-char *nevh_certain_number(double number, long double rest) {
-    char *text = nevh__array(ROOM, 1);
-    if (text)
-        snprintf(text, ROOM, "%.*Lg", LDBL_DIG, (long double)number + rest);
-    return text;
-}
-#endif
-
 NEVH__REPORTS(certain)
 
 int nevh_certain_go(nevh_certain *c, double t) {
     return nevh_certain_go_to(c, t, 0);
 }
+#endif

@@ -295,7 +295,7 @@ static int begin(orbit *o, real t, const real state[], nevh__report *report) {
 
 int NAMED(nevh__series_orbit_start)(orbit *o, real t, const real state[],
                                     nevh__report *report) {
-    memcpy(o->state, state, 2 * o->n * sizeof *state);
+    memmove(o->state, state, 2 * o->n * sizeof *state);
     note_state(o, state);
     take_unit(o, o->longest);
     find_unit(o, t, state);

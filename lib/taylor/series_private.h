@@ -122,24 +122,27 @@ void nevh__recurrence_free(nevh__recurrence *); /* NULL is allowed */
     "state is out of its domain, or a value is beyond 1e308"
 
 /* Memory to expand series up to an order in, in numbers of one kind. */
-#define NEVH__SERIES(kind, real, number)                                           \
-    typedef struct nevh__series_##kind nevh__series_##kind;                        \
-    nevh__series_##kind *nevh__series_new_##kind(const nevh__recurrence *,         \
-                                                 size_t order);                    \
-    void nevh__series_free_##kind(nevh__series_##kind *);                          \
+#define NEVH__SERIES(kind, real, number)                                             \
+    typedef struct nevh__series_##kind nevh__series_##kind;                          \
+    nevh__series_##kind *nevh__series_new_##kind(const nevh__recurrence *,           \
+                                                 size_t order);                      \
+    void nevh__series_free_##kind(nevh__series_##kind *);                            \
     /* From now on time is counted in that unit: 1 at first.  By powers of two \
-       this changes nothing but the exponents of coefficients. */   \
-    void nevh__series_in_##kind(nevh__series_##kind *, double unit);               \
+       this changes nothing but the exponents of coefficients. */     \
+    void nevh__series_in_##kind(nevh__series_##kind *, double unit);                 \
+    /* From now on values of functions are off by up to that part, each by         \
+       another: as their algorithms may round them.  0 at first. */ \
+    void nevh__series_away_##kind(nevh__series_##kind *, double by);                 \
     /* The coefficients at a state: rows of 2n, from that of order 0, the      \
-       state itself, on.  Returns whether they are finite. */   \
-    bool nevh__series_expand_##kind(nevh__series_##kind *, real t,                 \
-                                    const real state[], number rows[]);            \
+       state itself, on.  Returns whether they are finite. */     \
+    bool nevh__series_expand_##kind(nevh__series_##kind *, real t,                   \
+                                    const real state[], number rows[]);              \
     /* The largest value of a node at a state.                                   \
-       row  2n, out */ \
-    double nevh__series_largest_##kind(nevh__series_##kind *, real t,              \
-                                       const real state[], number row[]);          \
+       row  2n, out */   \
+    double nevh__series_largest_##kind(nevh__series_##kind *, real t,                \
+                                       const real state[], number row[]);            \
     /* The watched nodes at the state of the last expansion, for                 \
-       nevh__domain_reach. */ \
+       nevh__domain_reach. */   \
     const double *nevh__series_watched_##kind(const nevh__series_##kind *);
 NEVH__SERIES(double, double, double)
 NEVH__SERIES(long, long double, long double)

@@ -278,6 +278,7 @@ static nevh_separability separability;
     X(STATUS, nevh_sweep_run, (NULL, 0, 0, NULL, NULL, NULL))                  \
     X(STATUS, nevh_sweep_run_chunks, (NULL, NULL, NULL, NULL, NULL, NULL))     \
     X(STATUS, nevh_sweep_keep, (NULL, NULL))                                   \
+    X(STATUS, nevh_scene_own_outcomes, (NULL, NULL, NULL, 0))                  \
     X(ANY, nevh_sweep_stop, (NULL))                                            \
     X(ANY, nevh_system_free, (NULL))                                           \
     X(STATUS, nevh_system_add, (NULL, NULL))                                   \

@@ -245,4 +245,25 @@ says 'gauss4 .* failed: '
 exits 0 cost coupled-oscillators --integrators respa,verlet,taylor --budget 0.2
 has '^taylor: a series counts as one evaluation'
 has '^respa: exact steps of parts are not counted as evaluations'
+# Outcomes of the run: the period of a pendulum, 4 K(sin(1))/sqrt(g), by an order of 2
+# and of 4.
+exits 0 compare pendulum --observable period --integrators verlet,gauss4 --dt 0.1,0.05 \
+    --t-end 20 --format csv
+has '^# observable: period, 2\.66723073427 of gauss16'
+grep -v '^#' $work/out | awk -F, '{ e[$2, $6] = $21 } END { v = e["verlet", 0.1]/e["verlet", 0.05]
+    g = e["gauss4", 0.1]/e["gauss4", 0.05]
+    exit !(v > 3.8 && v < 4.2 && g > 15 && g < 17 && e["verlet", 0.1] > 1e-3) }' ||
+    fails 'has other errors of the period'
+exits 0 cost pendulum --observable 'frequency(phi)' --integrators verlet,gauss4 --t-end 20 \
+    --dt 0.1,0.05 --format csv
+exits 1 compare pendulum --observable 'first(phi < -5)' --dt 0.1 --t-end 20
+says 'what it waits for does not happen'
+exits 1 compare pendulum --observable state --dt 0.1 --t-end 20
+says 'there are 2 outcomes, not 1'
+exits 2 recommend pendulum --observable period --error 1e-6
+says 'is an outcome of a run'
+exits 2 cost pendulum --against length --observable period --t-end 20
+says 'is an outcome of a whole run'
+exits 2 compare pendulum --observable perod
+says 'the name perod is not known'
 exit $status

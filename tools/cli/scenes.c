@@ -293,6 +293,31 @@ static int assign(nevh_scene *scene, const options *o, const char *setting) {
     return scene_report(scene, o);
 }
 
+bool outcome_named(const char *text) {
+    char *name = text_print("%.*s", (int)strcspn(text, " ("), text);
+    bool found = nevh_outcome_find(name) >= 0;
+    free(name);
+    return found;
+}
+
+/* Takes --observable: a formula along the orbit or, of commands that take these, an
+   outcome of it. */
+static int observe(nevh_scene *scene, const options *o) {
+    const char *name = o->operands.item[0], *what = o->observable;
+    bool takes_outcomes =
+        strcmp(name, "cost") == 0 || strcmp(name, "compare") == 0;
+    if (!what || !nevh_scene_set_judged(scene, what))
+        return TOOL_OK;
+    if (!outcome_named(what) || nevh_scene_set_outcomes(scene, what))
+        return scene_report(scene, o);
+    return takes_outcomes
+               ? TOOL_OK
+               : tool_refuse("--observable %s is an outcome of a run: %s takes "
+                             "values along the orbit; cost and compare take "
+                             "both",
+                             what, name);
+}
+
 static int apply_options(nevh_scene *scene, const options *o) {
     if (nevh_scene_status(scene))
         return scene_report(scene, o);
@@ -306,8 +331,8 @@ static int apply_options(nevh_scene *scene, const options *o) {
         return scene_report(scene, o);
     if (o->transform && nevh_scene_set_transform(scene, o->transform))
         return scene_report(scene, o);
-    if (o->observable && nevh_scene_set_judged(scene, o->observable))
-        return scene_report(scene, o);
+    if (observe(scene, o))
+        return TOOL_USAGE;
     return nevh_scene_system(scene) ? TOOL_OK : scene_report(scene, o);
 }
 

@@ -389,6 +389,8 @@ int scene_number(nevh_scene *, const options *, const char *formula, double *);
 /* Its message on stderr; TOOL_USAGE. */
 int scene_report(const nevh_scene *, const options *);
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed and *scene NULL */
+/* True of "period", "mean(x)". */
+bool outcome_named(const char *text);
 int scene_open(nevh_scene **scene, const options *);
 int scene_open_named(nevh_scene **scene, const char *name, const options *);
 /* The message that none is there. */

@@ -1,6 +1,8 @@
 /* nevh: errors of an observable that the user names, against the reference.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "row.h"
+#include <float.h>
+#include <nevh/sweep.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,6 +44,72 @@ static int no_value(const plan *p, double t) {
     return TOOL_FAILED;
 }
 
+/* The outcome of a run; NAN: it has none.
+   message  the scene's, where it fails */
+static double outcome_of(const plan *p, const char *integrator,
+                         const char *gradient, double dt, double tolerance) {
+    double value = NAN;
+    nevh_sweep_options is = {.gradient = nevh_gradient_named(gradient),
+                             .gradient_step = p->gradient_step,
+                             .dt = dt,
+                             .t_end = p->t_end,
+                             .tolerance = tolerance,
+                             .portable = p->portable,
+                             .native = NEVH_NATIVE_NEVER};
+    is.integrator = plan_scheme(p, integrator, &is.transformed);
+    is.transformed = plan_transform(p, integrator) != NULL;
+    is.substeps = nevh_substeps_named(integrator);
+    return nevh_scene_own_outcomes(p->scene, &is, &value, 1) ? NAN : value;
+}
+
+void outcome_compare(const plan *p, row *r) {
+    if (!p->outcome || !r->ran)
+        return;
+    double value =
+        outcome_of(p, r->integrator, r->gradient, r->step, r->tolerance);
+    double error = fabs(value - p->outcome_value) / p->observable_scale;
+    r->observable_error = isfinite(error) ? error : INFINITY;
+}
+
+/* Halves steps of a scheme of order 16 until halves differ no more. */
+static int take_outcome(plan *p) {
+    enum { HALVINGS = 12, WORSE = 2 };
+    static const double fine = 1e-13, fair = 1e-6, most_steps = 3e5;
+    int worse = 0; /* halves that are no nearer: rounding, or chaos */
+    double h = plan_longest_dt(p), before = NAN, value = NAN;
+    double least = INFINITY;
+    const char *gradient = "exact";
+    for (int i = 0; i < HALVINGS && worse < WORSE && !(least <= fine) &&
+                    plan_steps(p, h) < most_steps;
+         i++, h /= 2) {
+        value = outcome_of(p, "gauss16", gradient, h, 0);
+        if (isnan(value)) /* of terms without derivatives */
+            value =
+                outcome_of(p, "gauss16", gradient = p->gradients.item[0], h, 0);
+        double apart = fabs(value - before) / fmax(fabs(value), DBL_MIN);
+        before = value;
+        worse = i < 2 || apart < least ? 0 : worse + 1;
+        if (!(apart < least))
+            continue;
+        least = apart;
+        p->outcome_value = value;
+    }
+    const char *why = nevh_scene_message(p->scene);
+    if (!(least < fair)) {
+        tool_refuse(
+            "%s: --observable %s has no certain value until t = %.6g: %s",
+            p->name, p->observable, p->t_end,
+            *why           ? why
+            : isnan(value) ? "what it waits for does not happen"
+                           : "it depends on the step");
+        return TOOL_FAILED;
+    }
+    p->observable_level = true;
+    p->observable_error = fmax(least, DBL_EPSILON);
+    p->observable_scale = fmax(fabs(p->outcome_value), DBL_MIN);
+    return TOOL_OK;
+}
+
 int plan_observe(plan *p, const char *formula) {
     if (!p->reference) {
         tool_refuse("%s: no errors of --observable: %s", p->name,
@@ -50,9 +118,13 @@ int plan_observe(plan *p, const char *formula) {
     }
     double low = INFINITY, high = -INFINITY, start = p->run->t_start;
     double none = NAN;
-    double *state = tool_allocate(2 * p->n, sizeof *state);
     p->observable = formula;
     p->observable_error = 0;
+    p->outcome =
+        outcome_named(formula) && nevh_scene_set_judged(p->scene, formula);
+    if (p->outcome)
+        return take_outcome(p);
+    double *state = tool_allocate(2 * p->n, sizeof *state);
     for (size_t i = 0; i <= TIMES; i++) {
         double t = start + wanted(i) * (p->t_end - start);
         if (nevh_reference_state(p->reference, t, state, state + p->n))
@@ -80,11 +152,18 @@ void observable_notes(const plan *p, list *notes) {
     if (!p->observable)
         return;
     const char *unit = nevh_scene_label(p->scene, p->observable);
-    list_print(notes,
-               "observable: %s; its errors are divided by its %s, %.6g%s%s%s",
-               p->observable, p->observable_level ? "size" : "range",
-               p->observable_scale, *unit ? " " : "", unit,
-               p->observable_level ? " (it hardly changes)" : "");
+    if (p->outcome)
+        list_print(notes,
+                   "observable: %s, %.12g of gauss16, to %.0e; its errors are "
+                   "divided by that",
+                   p->observable, p->outcome_value, p->observable_error);
+    else
+        list_print(
+            notes,
+            "observable: %s; its errors are divided by its %s, %.6g%s%s%s",
+            p->observable, p->observable_level ? "size" : "range",
+            p->observable_scale, *unit ? " " : "", unit,
+            p->observable_level ? " (it hardly changes)" : "");
 }
 
 void observable_show(table *t, const plan *p, const row *r) {
@@ -97,6 +176,8 @@ void observable_show(table *t, const plan *p, const row *r) {
 void observable_compare(observable *o, double t, const double q[],
                         const double p[], const double reference[]) {
     double value;
+    if (o->plan->outcome)
+        return;
     if (nevh_scene_judged_value(o->plan->scene, t, q, p, &value))
         value = NAN;
     double error = fabs(value - value_at(o->plan, t, reference)) /

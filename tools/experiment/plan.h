@@ -44,6 +44,8 @@ typedef struct {
     double ends; /* when the solution does; NAN: not, as far as is known */
     char *no_reference;      /* why there is none */
     const char *observable;  /* whose errors count, not of states; NULL */
+    bool outcome;            /* that is no value along the orbit */
+    double outcome_value;    /* its own */
     double observable_scale; /* that its errors are divided by */
     bool observable_level;   /* its size, not its range */
     double observable_error; /* what that of the reference makes of it */

@@ -296,6 +296,7 @@ void row_run(const plan *p, row *r) {
     if (!refused(r, s)) {
         r->native = nevh_stepper_native(s, NULL);
         run_observed(p, r, s);
+        outcome_compare(p, r);
         if (!p->screening)
             row_follow(p, r);
         if (r->ran && p->diagnostics)

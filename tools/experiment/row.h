@@ -141,6 +141,8 @@ typedef struct {
 } observable;
 void observable_show(table *, const plan *, const row *);
 /* As nevh_pair_fn. */
+/* Takes the error of an outcome, by another run of a row that ran. */
+void outcome_compare(const plan *, row *);
 void observable_compare(observable *, double t, const double q[],
                         const double p[], const double reference[]);
 

@@ -320,7 +320,14 @@ static int choose_end(lengths *l, const options *o) {
     }
     if (!status && p->by_state)
         status = plan_require_reference(p);
-    return !status && o->observable ? plan_observe(p, o->observable) : status;
+    if (!status && o->observable)
+        status = plan_observe(p, o->observable);
+    if (!status && p->outcome)
+        status =
+            tool_refuse("--against length takes values along the orbit; %s "
+                        "is an outcome of a whole run",
+                        o->observable);
+    return status;
 }
 
 int cost_lengths(const options *o) {
