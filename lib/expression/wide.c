@@ -1,10 +1,10 @@
 /* nevh: operations on numbers with more digits than double.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/wide_private.h"
+#include "expression/tape_inside_private.h"
 #include "expression/tape_private.h"
 #include <stdint.h>
 #include <string.h>
-#include "expression/tape_inside_private.h"
 #ifndef NEVH_QUADMATH
 #include "expression/tape_operations_private.h"
 #undef NEVH__L

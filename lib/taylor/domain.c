@@ -173,9 +173,11 @@ size_t nevh__domain_edge(const nevh__recurrence *r, const double rows[],
 }
 
 bool nevh__domain_is_closed(const nevh__recurrence *r, size_t edge) {
-    return edge != SIZE_MAX &&
-           (r->edges[edge].function == NEVH__CBRT ||
-            nevh__operation_of(r->edges[edge].function)->jumps);
+    if (edge == SIZE_MAX)
+        return false;
+    unsigned function = r->edges[edge].function;
+    const nevh__operation_traits *o = nevh__operation_of(function);
+    return function == NEVH__CBRT || (o->kind == NEVH__KIND_KINK && o->jumps);
 }
 
 size_t nevh__domain_kink(const nevh__recurrence *r) {

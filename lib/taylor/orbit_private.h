@@ -35,7 +35,7 @@ enum { NEVH__ORBIT_PAST = 128 };
         /* For the last series: the time for which they held, and the rate of    \
            change of the state at their beginning. */ \
         double held[NEVH__ORBIT_PAST], speed[NEVH__ORBIT_PAST];                    \
-        double extent[2][NEVH__ORBIT_PAST]; /* of coordinates, of momenta */       \
+        double extent[2][NEVH__ORBIT_PAST], change[2][NEVH__ORBIT_PAST];           \
         bool ended; /* where the last one got too short, without bound */          \
         const nevh_timing *timing; /* NULL: of no concern; borrowed */             \
         const volatile sig_atomic_t                                                \

@@ -150,32 +150,38 @@ static void limit_by_time(orbit *o) {
 }
 
 /* True if series that get shorter and shorter mean the end of a solution, where the
-   state changes ever faster and grows; at a branch point it does not, and before a thin
-   wall momenta get smaller. */
+   state changes ever faster; at a branch point it does not.  Before a thin wall it does,
+   but gets smaller, and hardly changes in a series until it is there. */
 static bool ends(const orbit *o) {
-    static const double shrunk = 1e4, faster = 10;
+    static const double shrunk = 1e4, faster = 10, hardly = 1e-3;
     size_t now = o->count % NEVH__ORBIT_PAST;
     size_t half = largest_of(o, 1, 1) >= largest_of(o, 1, 0); /* the faster */
     for (size_t i = 1; i < NEVH__ORBIT_PAST && i < o->count; i++) {
         size_t then = (o->count - i) % NEVH__ORBIT_PAST;
         if (o->held[then] > shrunk * o->held[now])
             return o->speed[now] > faster * o->speed[then] &&
-                   o->extent[half][now] > o->extent[half][then];
+                   (o->extent[half][now] > o->extent[half][then] ||
+                    o->change[half][then] > hardly);
     }
     return false;
 }
 
-/* Keeps the reach of this series, how fast it begins, and the sizes of coordinates and
-   of momenta. */
+/* Keeps the reach of this series, how fast it begins, the sizes of coordinates and of
+   momenta, and the part of these by which they change. */
 static void note_past(orbit *o) {
     size_t at = o->count % NEVH__ORBIT_PAST;
+    double reach = (double)(o->reach / o->unit);
     o->held[at] = (double)o->reach;
     o->speed[at] = (double)(largest(o, 1) / o->unit);
     for (size_t half = 0; half < 2; half++) {
-        double squares = 0;
-        for (size_t i = half * o->n; i < (half + 1) * o->n; i++)
+        double squares = 0, slopes = 0;
+        for (size_t i = half * o->n; i < (half + 1) * o->n; i++) {
+            double slope = shorten(o->rows[2 * o->n + i]) * reach;
             squares += (double)(o->start[i] * o->start[i]);
+            slopes += slope * slope;
+        }
         o->extent[half][at] = sqrt(squares);
+        o->change[half][at] = sqrt(slopes / squares);
     }
 }
 
