@@ -396,7 +396,8 @@ int nevh_certain_go_to(nevh_certain *c, double time, long double rest) {
     if (!status)
         status = go_both(c, t);
     bool ended = c->ending && *c->ending;
-    bool again = c->fine.pairs && !ended && (status || lacks_digits(c));
+    bool again = c->fine.pairs && !ended &&
+                 (status == NEVH_EFAILED || (!status && lacks_digits(c)));
     if (again) {
         c->report = (nevh__report){0};
         status = start_both(c, false);

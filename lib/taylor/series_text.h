@@ -165,6 +165,12 @@ static real power(real x, real exponent) {
     return FUNCTION(pow)(x, exponent);
 }
 
+/* True of functions whose values are whole numbers. */
+static bool is_whole(unsigned function) {
+    return function == NEVH__SIGN || function == NEVH__FLOOR ||
+           function == NEVH__NOTHING;
+}
+
 /* A function's value, which is off by another part for each node. */
 static number rounded_value(const series *s, size_t node, real y) {
     double part = (double)(node * 0x9E3779B9u % 255) / 127 - 1;
@@ -209,8 +215,10 @@ static void begin_batch(const series *s, const nevh__batch *b) {
     default:
         z = b->arity > 1 ? operand(s, b, 1) : x;
         for (size_t i = 0; i < b->count; i++)
-            y[i] = rounded_value(s, b->first + i,
-                                 function(b, widen(x[i]), widen(z[i])));
+            y[i] = is_whole(b->function)
+                       ? narrow(function(b, widen(x[i]), widen(z[i])))
+                       : rounded_value(s, b->first + i,
+                                       function(b, widen(x[i]), widen(z[i])));
     }
 }
 
