@@ -116,13 +116,15 @@ static bool is_outside(const plot_screen *on, pair at) {
     return !(at.x >= 0 && at.x <= on->width && at.y >= 0 && at.y <= on->height);
 }
 
+/* A point must have its name, a line none that curves cross. */
 static bool place_name(const plot *p, const series *s, const plot_screen *on,
                        double right, const guide_name *others, size_t count,
                        guide_name *to) {
     if (s->count < 2 && is_outside(on, plot_in_pixels(on, s->point[0])))
         return false;
     bool placed = place_beside(p, s, on, right, true, others, count, to) ||
-                  place_beside(p, s, on, right, false, others, count, to);
+                  (s->count < 2 &&
+                   place_beside(p, s, on, right, false, others, count, to));
     if (placed && s->count < 2)
         join_name(to);
     return placed;
