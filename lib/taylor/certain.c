@@ -28,17 +28,16 @@ struct nevh_certain {
     nevh__recurrence *recurrence, *other; /* other: of the coarse run */
     orbit fine, coarse;                   /* both of pairs, or neither */
     const volatile sig_atomic_t *ending;  /* or NULL */
-    double at, parted,
-        renewed;           /* times since t0: now; when both were far apart,
-                                   INFINITY: never; when the coarse run began anew */
+    double at;                            /* now, since t0, as the next two */
+    double parted;         /* when both were far apart; INFINITY: never */
+    double renewed;        /* when the coarse run began anew */
     bool underflows, lost; /* something was below the doubles, and matters */
     const nevh_system *system;
     nevh_timing *timing; /* from t0 until `seen`; NULL: H reads no time */
     double seen;
     nevh__wide t0, *start;
-    nevh__wide t0_away, *computed,
-        *away; /* of the coarse run; away: some roundings
-                                             from where that is computed */
+    nevh__wide t0_away, *computed; /* of the coarse run */
+    nevh__wide *away;              /* the same, some roundings from there */
 };
 
 /* So many digits pairs may do for. */
@@ -163,7 +162,9 @@ static int certain_make(nevh_certain *c, const nevh__certain_start *from,
     if (!take_starts(c, from, other))
         return nevh__no_memory(&c->report);
     c->recurrence = nevh__recurrence_wide(c->system, from->rates, &c->report);
-    if (c->recurrence)
+    if (other == from)
+        c->other = c->recurrence;
+    else if (c->recurrence)
         c->other =
             nevh__recurrence_wide(other->system, other->rates, &c->report);
     return c->other ? start_both(c, c->digits <= DIGITS_OF_PAIRS)
@@ -212,8 +213,9 @@ void nevh_certain_free(nevh_certain *c) {
         return;
     certain_clear(&c->fine);
     certain_clear(&c->coarse);
+    if (c->other != c->recurrence)
+        nevh__recurrence_free(c->other);
     nevh__recurrence_free(c->recurrence);
-    nevh__recurrence_free(c->other);
     nevh_timing_free(c->timing);
     free(c->start);
     free(c);
@@ -403,14 +405,7 @@ int nevh_certain_go_to(nevh_certain *c, double time, long double rest) {
         status = start_both(c, false);
         status = status ? status : go_both(c, t);
     }
-    static const char unknown[] = "the series at"; /* NEVH__SERIES_NOT_FINITE */
-    bool unclear = strncmp(c->report.text, unknown, sizeof unknown - 1) == 0;
-    return status && unclear && c->underflows
-               ? nevh__fail(&c->report, NEVH_EDOM,
-                            "there is no series near t = %.9g: numbers are "
-                            "below 1e-308",
-                            (double)(c->t0 + c->at))
-               : status;
+    return status;
 }
 
 size_t nevh_certain_series(const nevh_certain *c) {

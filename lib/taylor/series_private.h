@@ -119,7 +119,7 @@ void nevh__recurrence_free(nevh__recurrence *); /* NULL is allowed */
 /* The message on coefficients that are not finite, at a time. */
 #define NEVH__SERIES_NOT_FINITE                                                \
     "the series at t = %.9g is not finite: H has no derivatives there, the "   \
-    "state is out of its domain, or a value is beyond 1e308"
+    "state is out of its domain, or a value is beyond 1e308 or below 1e-308"
 
 /* Memory to expand series up to an order in, in numbers of one kind. */
 #define NEVH__SERIES(kind, real, number)                                             \

@@ -256,6 +256,11 @@ grep -v '^#' $work/out | awk -F, '{ e[$2, $6] = $21 } END { v = e["verlet", 0.1]
     fails 'has other errors of the period'
 exits 0 cost pendulum --observable 'frequency(phi)' --integrators verlet,gauss4 --t-end 20 \
     --dt 0.1,0.05 --format csv
+grep -v '^#' $work/out | awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
+    { e[$at["integrator"], $at["dt"]] = $at["observable_error"] }
+    END { v = e["verlet", 0.1]/e["verlet", 0.05]
+    exit !(v > 3.5 && v < 4.5 && e["gauss4", 0.1] < e["verlet", 0.1]/100) }' ||
+    { fails 'has other errors of the frequency'; cat $work/out; }
 exits 1 compare pendulum --observable 'first(phi < -5)' --dt 0.1 --t-end 20
 says 'what it waits for does not happen'
 exits 1 compare pendulum --observable state --dt 0.1 --t-end 20

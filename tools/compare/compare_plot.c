@@ -59,7 +59,7 @@ static void note_failed(const plan *p, const row rows[], size_t count,
 }
 
 /* The end of the axes: where the last run ended, if the scene's stop ended all. */
-static double last_end(const plan *p, const row rows[], size_t count) {
+static double shown_end(const plan *p, const row rows[], size_t count) {
     double last = nevh_scene_stops(p->scene) ? p->run->t_start : p->t_end;
     for (size_t i = 0; i < count; i++) {
         double end = isnan(rows[i].stopped) ? p->t_end : rows[i].t_end;
@@ -76,7 +76,7 @@ int compare_plot(const options *o, const plan *p, const row rows[],
     plot *to = NULL;
     size_t panels = 0;
     plan shown = *p;
-    shown.t_end = last_end(p, rows, count);
+    shown.t_end = shown_end(p, rows, count);
     for (size_t i = 0; i < count; i++) {
         panels += begins(rows, i);
         if (!rows[i].ran || panels > MOST_PANELS)
