@@ -292,6 +292,16 @@ NEVH__INLINE void nevh__stage_compare_rows(const nevh__stage_step *x,
         }
 }
 
+NEVH__INLINE void nevh__stage_compare_changes(const nevh__stage_step *x,
+                                              const nevh__stage_changes *c,
+                                              size_t lanes,
+                                              nevh__stage_comparison *found) {
+    NEVH_LANES(i, NEVH__LANES) {
+        found->all[i] = found->better[i] = found->most[i] = 0;
+    }
+    nevh__stage_compare_rows(x, c, lanes, found);
+}
+
 NEVH__INLINE double nevh__stage_greater(double x, double y) {
     return x > y ? x : y;
 }
@@ -323,10 +333,7 @@ NEVH__INLINE void nevh__stage_compare_sweep(const nevh__stage_step *x,
                                             size_t lanes,
                                             nevh__stage_progress made[]) {
     nevh__stage_comparison found;
-    NEVH_LANES(i, NEVH__LANES) {
-        found.all[i] = found.better[i] = found.most[i] = 0;
-    }
-    nevh__stage_compare_rows(x, c, lanes, &found);
+    nevh__stage_compare_changes(x, c, lanes, &found);
     if (lanes == NEVH__STAGES_TOGETHER)
         nevh__stage_tell(nevh__sum_lanes(found.all),
                          nevh__sum_lanes(found.better),

@@ -52,15 +52,15 @@ NEVH__INLINE bool add_block(const step_weights *w, block *to) {
     return nevh__sum_lanes(check) == 0;
 }
 
-/* The orbits of a block as they iterate. */
+/* The orbits of a block as they iterate: what nevh__stage_lane has of each, the
+   smallest change being in r.lowest; and 1 where one is done. */
 typedef struct {
     const double *N;
     block *to;
     double t, h;
     sweeps_room r;
-    nevh__stage_lane lane[8];
-    double level[8], unknown;
-    bool settled[8];
+    double change[8], before[8], first[8], grace[8], stalls[8], slow[8];
+    double settled[8], level[8], unknown;
     size_t left, *counted;
 } iteration;
 
@@ -80,30 +80,87 @@ NEVH__INLINE void begin_sweeps(const nevh__stage_step *x,
                                    PAST * STRIDE);
 }
 
-/* Judges sweep number `sweeps` of orbit i, and keeps its slopes where it is done;
-   false: it does not get on. */
-NEVH__INLINE bool judge_orbit(iteration *it, size_t i, size_t sweeps,
-                              const nevh__stage_progress *made) {
+/* Passes the orbits whose changes fall so much that nevh__stage_judge_fixed_point
+   tells them to go on; `open`: 0 for those, and for those that are done. */
+NEVH__INLINE void pass_falling(iteration *it,
+                               const nevh__stage_comparison *found,
+                               double open[8]) {
+    const double most = UNKNOWN * STAGES <= NEVH__STAGE_FEW_UNKNOWNS
+                            ? NEVH__STAGE_SLOW_SMALL
+                            : NEVH__STAGE_SLOW_LARGE;
+    NEVH_LANES(i, 8) {
+        double change = found->most[i], last = it->change[i];
+        double ahead = NEWTON ? most * it->before[i] : INFINITY;
+        double enough = ahead > NEVH__STAGE_TINY ? ahead : NEVH__STAGE_TINY;
+        double bar = NEVH__STAGE_HARDLY_LESS * it->r.lowest[i];
+        double not_yet = (change < bar ? 0 : 1) + (change <= 1 ? 0 : 1) +
+                         (change <= enough ? 0 : 1) +
+                         (found->all[i] > 0 ? 0 : 1) +
+                         (found->all[i] < INFINITY ? 0 : 1);
+        bool falls = not_yet == 0;
+        open[i] = it->settled[i] > 0 ? 0 : not_yet;
+        it->first[i] = falls && !(last < INFINITY) ? change : it->first[i];
+        it->before[i] = falls ? last : it->before[i];
+        it->change[i] = falls ? change : last;
+        it->r.lowest[i] = falls ? change : it->r.lowest[i];
+        it->grace[i] = falls ? 0 : it->grace[i];
+        it->slow[i] = falls ? 0 : it->slow[i];
+    }
+}
+
+/* Judges a sweep of orbit i. */
+NEVH__INLINE nevh__stage_state
+judge_orbit(iteration *it, size_t i, const nevh__stage_comparison *found) {
     struct nevh__stage_judge_owner owner = {
         it->N, it->to->y + i, it->r.scale + i, it->t,
         it->h, &it->level[i], &it->unknown,    &it->counted[1]};
     nevh__stage_judged judged = {0,     true, NOISY, NEWTON, UNKNOWN * STAGES,
                                  &owner};
-    nevh__stage_state state;
-    if (it->settled[i])
-        return true;
-    if (!(made->change < INFINITY))
-        return false;
-    state = nevh__stage_judge_fixed_point(&judged, &it->lane[i], made);
-    if (state != NEVH__DONE)
-        return state == NEVH__GO_ON && sweeps < NEVH__STAGE_SWEEPS;
-    it->settled[i] = true;
-    it->to->first_change[i] = it->lane[i].first;
-    it->left--;
-    it->counted[0] += sweeps;
-    for (size_t k = i; k < 2 * DOF * STRIDE; k += 8)
-        it->to->slopes[k] = it->r.gradient[k];
-    return true;
+    nevh__stage_lane lane = {.grace = it->grace[i] > 0,
+                             .stalls = (unsigned)it->stalls[i],
+                             .slow = (unsigned)it->slow[i],
+                             .change = it->change[i],
+                             .before = it->before[i],
+                             .least = it->r.lowest[i],
+                             .first = it->first[i]};
+    nevh__stage_progress made;
+    nevh__stage_tell(found->all[i], found->better[i], found->most[i],
+                     &it->r.lowest[i], &made);
+    if (!(made.change < INFINITY))
+        return NEVH__STUCK;
+    nevh__stage_state state =
+        nevh__stage_judge_fixed_point(&judged, &lane, &made);
+    it->grace[i] = lane.grace;
+    it->stalls[i] = lane.stalls;
+    it->slow[i] = lane.slow;
+    it->change[i] = lane.change;
+    it->before[i] = lane.before;
+    it->first[i] = lane.first;
+    return state;
+}
+
+/* Judges sweep number `sweeps` of all, and keeps the slopes of those that are done;
+   false: one does not get on. */
+NEVH__INLINE bool judge_sweep(iteration *it, size_t sweeps,
+                              const nevh__stage_comparison *found) {
+    double open[8];
+    pass_falling(it, found, open);
+    if (nevh__sum_lanes(open) > 0)
+        for (size_t i = 0; i < 8; i++) {
+            nevh__stage_state state =
+                open[i] > 0 ? judge_orbit(it, i, found) : NEVH__GO_ON;
+            if (state == NEVH__STUCK)
+                return false;
+            if (state != NEVH__DONE)
+                continue;
+            it->settled[i] = 1;
+            it->to->first_change[i] = it->first[i];
+            it->left--;
+            it->counted[0] += sweeps;
+            for (size_t k = i; k < 2 * DOF * STRIDE; k += 8)
+                it->to->slopes[k] = it->r.gradient[k];
+        }
+    return it->left == 0 || sweeps < NEVH__STAGE_SWEEPS;
 }
 
 NEVH__INLINE bool take_block(iteration *it, const step_weights *w,
@@ -111,7 +168,7 @@ NEVH__INLINE bool take_block(iteration *it, const step_weights *w,
                              const double *M) {
     double products[STRIDE];
     nevh__vector bad = {0};
-    nevh__stage_progress made[8];
+    nevh__stage_comparison found;
     sweeps_room *r = &it->r;
     struct nevh__stage_owner owner = {it->N, r->times, &bad};
     nevh__stage_step x = sweeps_of(r, w, it->to->y, it->to->lost, &owner);
@@ -121,10 +178,10 @@ NEVH__INLINE bool take_block(iteration *it, const step_weights *w,
     for (size_t i = 0; i < 8; i++) {
         if (M[HOLD_AT * WIDTH + i] > 0)
             return false;
-        nevh__stage_forget(&it->lane[i]);
+        it->change[i] = it->before[i] = it->first[i] = INFINITY;
+        it->grace[i] = it->stalls[i] = it->slow[i] = it->settled[i] = 0;
         r->lowest[i] = INFINITY;
         it->level[i] = -1;
-        it->settled[i] = false;
     }
     load_block(it->N, it->h, Q, P, M, r, it->to);
     begin_sweeps(&x, &changes, it);
@@ -132,10 +189,9 @@ NEVH__INLINE bool take_block(iteration *it, const step_weights *w,
         it->counted[2] += it->left > FEW ? 8 : it->left;
         if (nevh__stage_map(&x, 8))
             return false;
-        nevh__stage_compare_sweep(&x, &changes, 8, made);
-        for (size_t i = 0; i < 8; i++)
-            if (!judge_orbit(it, i, sweeps, &made[i]))
-                return false;
+        nevh__stage_compare_changes(&x, &changes, 8, &found);
+        if (!judge_sweep(it, sweeps, &found))
+            return false;
     }
     return !is_bad(bad) && it->unknown == 0 && add_block(w, it->to);
 }
