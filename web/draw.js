@@ -352,7 +352,7 @@ function report(atOnce) {
     const cells = body.rows[i].cells, row = rows[i], r = list[i];
     const disc = list.findIndex((o) => o.width > 1 && o.scheme === r.scheme);
     const name = r.colour < 0 ? "exact" : r.scheme, mark = letterOf(name);
-    const values = [mark.textContent + " " + name, row ? digits(row[1], 9) : "",
+    const values = [mark.textContent + " " + name, row ? digits(row[1]) : "",
       row ? row[2].toExponential(2) : "refused",
       ahead[i] ? ahead[i].error.toExponential(1) : "",
       disc >= 0 && rows[disc] ? areaText(rows[disc], list[disc].area) : ""];
@@ -383,7 +383,7 @@ function report(atOnce) {
 function areaText(row, first) {
   const size = Math.abs(row[1] / first), doubt = Math.abs(row[2] / first) / 3;
   if (!(doubt < 0.05)) return "too folded";
-  return digits(row[1], 4) + ", ratio " + size.toFixed(doubt < 1e-3 ? 4 : 2);
+  return nevhNumber(row[1]) + ", ratio " + size.toFixed(doubt < 1e-3 ? 4 : 2);
 }
 function spoken() {
   if (!rows[0]) return "";

@@ -30,6 +30,12 @@ const result = async (page) => {
   return JSON.parse(await page.evaluate(
     "document.getElementById('result').textContent"));
 };
+// Of the table, all columns are seen.
+const fits = async (page, name) => {
+  const [needed, given] = await page.evaluate(`(() => { report(true);
+    return [at("states").scrollWidth, at("states").parentElement.clientWidth]; })()`);
+  check(needed <= given, `${name}: the table has ${needed} pixels in ${given}`);
+};
 // Twelve digits: the C libraries' functions differ in the last.
 const near = (a, b, size) => Math.abs(a - b) <= 1e-12 * Math.max(1, size);
 
@@ -202,6 +208,25 @@ await tried("pendulum", "integrators=verlet,rk4,euler&disc=1&dt=0.0625", async (
   const ratio = (i) => page.evaluate(`Math.abs(rows[${i}][1] / list[${i}].area)`);
   check(Math.abs(await ratio(3) - 1) < 0.01, "verlet's area changes: " + await ratio(3));
   check(Math.abs(await ratio(5) - 1) > 0.1, "euler's area stays: " + await ratio(5));
+  await fits(page, "pendulum");
+});
+await tried("fput", "integrators=verlet,symplectic-euler-a,euler&disc=1", async (page) => {
+  check(await page.until("steps > 5"), "nothing moves");
+  await fits(page, "fput");
+});
+
+// The button "Areas": the disc is resolved for ten seconds, and is as the sentence says.
+await tried("kepler", "", async (page) => {
+  check(await page.until("steps > 5"), "nothing moves");
+  await page.evaluate(`[...at("tries").querySelectorAll("button")]
+    .find((one) => one.textContent === "Areas").click()`);
+  check(await page.until("list.length === 4 && rows[0][0] >= 10 * seconds()"), "no disc");
+  const [kept, other] = await page.evaluate(`setPlaying(false); quiet().then(() =>
+    [2, 3].map((i) => areaText(rows[i], list[i].area)))`);
+  check(/ratio (1\.0|0\.9[5-9])/.test(kept), "a disc of verlet: " + kept);
+  check(/ratio 0\.[0-8]/.test(other), "a disc of euler: " + other);
+  check(await page.evaluate("/with euler its area changes/.test(at('lesson').textContent)"),
+    "the sentence");
 });
 
 // A telephone: nothing is wider; all controls have names; keys move them; the

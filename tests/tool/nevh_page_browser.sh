@@ -12,6 +12,7 @@ command=page
 exits 0 page pendulum -o $work/pendulum.html
 exits 0 page kepler -o $work/kepler.html
 exits 0 page pendulum kepler -o $work/both.html
+exits 0 page fput -o $work/fput.html
 exits 0 page kepler-0.9 -o $work/kepler-0.9.html
 exits 0 page henon-heiles -o $work/henon-heiles.html
 sed '/^\[picture\]/,/^$/d' "$srcdir/scenes/kapitza.nevh" >$work/kapitza.nevh
