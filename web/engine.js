@@ -90,10 +90,10 @@ function nevhEngine(send) {
     return shown;
   }
 
-  // A disc has a tenth of the lengths over which H varies.
+  // A disc is small beside the lengths over which H varies, so that 256 states resolve it.
   const radius = (i) => {
-    const length = 0.1 * x.page_length(page, i);
-    return length > 0 && length < Infinity ? length : 0.1;
+    const length = 0.03 * x.page_length(page, i);
+    return length > 0 && length < Infinity ? length : 0.03;
   };
   function race({ start, list }) {
     if (start) numbers(x.page_start(page), 2 * n).set(start);

@@ -31,8 +31,7 @@ const inLesson = () => lesson && S.dt === lesson.dt && !S.start &&
 
 async function teach() {
   const other = S.schemes.find((name) => schemeOf(name)?.symplectic === "no") || "rk4";
-  const kept = S.schemes.find((name) => schemeOf(name)?.symplectic === "yes") || "verlet";
-  const answer = await ask({ ask: "lesson", schemes: [kept, other], gradient: S.gradient });
+  const answer = await ask({ ask: "lesson", schemes: [keeper(), other], gradient: S.gradient });
   if (!answer.ok) return sayWrong(answer.message);
   lesson = answer.lesson;
   S.start = null;
@@ -43,6 +42,8 @@ async function teach() {
   await race();
   setPlaying(true);
 }
+const keeper = () =>
+  S.schemes.find((name) => schemeOf(name)?.symplectic === "yes") || "verlet";
 const schemeOf = (name) => scene.integrators.find((one) => one.name === name);
 
 // ---- things to try ----
@@ -57,8 +58,8 @@ function tries() {
     list.push(["A step too long", `${S.limited} is unstable at this dt`, () =>
       set({ dt: +(1.02 * S.limit).toPrecision(4), schemes: [S.limited] })]);
   if (scene.coordinates.length <= 3 && !scene.balance)
-    list.push(["Areas", "a disc keeps its area with a symplectic scheme, and grows with euler",
-      () => set({ disc: true, schemes: [first === "euler" ? "verlet" : first, "euler"] })]);
+    list.push(["Areas", "a disc keeps its area with a symplectic scheme; with euler its area changes",
+      () => set({ disc: true, speed: Math.min(S.speed, 0), schemes: [keeper(), "euler"] })]);
   list.push(["Against the exact orbit", `${first} keeps its energy, and is out of step`,
     () => set({ exact: true })]);
   if (scene.sections.length && S.section < 0)
