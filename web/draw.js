@@ -43,7 +43,7 @@ function drawConfiguration() {
   }
   margins(8, 8, 8, 24);
   const b = seen || [-1, 1, -1, 1];
-  const reach = Math.max(b[1] - b[0], b[3] - b[2], 1e-9) / 2;
+  const reach = Math.max(b[1] - b[0], b[3] - b[2]) / 2 || 1;
   const cx = (b[0] + b[1]) / 2, cy = (b[2] + b[3]) / 2;
   const far = reach * 1.15;
   if (!pulling) configuration.box = [cx - far, cx + far, cy - far, cy + far];
@@ -116,6 +116,7 @@ function drawProfile() {
   for (let k = 0; k < n && rows[0]; k++)
     most = Math.max(most, Math.abs(rows[0][4 + k]) || 0);
   profile = most;
+  most = most || 1;
   configuration.box = [0.5, n + 0.5, -1.1 * most, 1.1 * most];
   const pen = configuration.begin(false);
   pen.save();
@@ -133,7 +134,7 @@ function drawProfile() {
   }
   pen.restore();
 }
-let profile = 1e-9;
+let profile = 0;
 function drawParts(pen, i) {
   const picture = pictures[i], colour = list[i].colour;
   pen.save();
@@ -158,7 +159,7 @@ function drawParts(pen, i) {
 // The axes stay; they grow by doubling, and by decades.
 let errorBox = null;
 function drawErrors() {
-  let low = Infinity, high = 1e-16, first = 0, end = 1e-9;
+  let low = Infinity, high = 1e-16, first = 0, end = -Infinity;
   const expected = ahead.map((one) => one ? one.error : 0);
   const least = Math.min(...expected.filter((v) => v > 0));
   if (least < Infinity) { high = Math.max(...expected); low = least / 10; }
@@ -226,10 +227,11 @@ function choosePhaseBox() {
   if (extent) { p0 = Math.min(p0, extent[0]); p1 = Math.max(p1, extent[1]); }
   if (list[0] && rows[0] && !(q1 >= q0)) [q0, q1, p0, p1] = [-1, 1, -1, 1];
   if (turns) { q0 = -c.period / 2; q1 = c.period / 2; }
-  const n = scene.coordinates.length, least = (from, q) => steps > 0 || !rows[0]
-    ? Math.max(1e-3 * Math.abs(q), 1e-9)
-    : 0.2 * Math.max(...rows[0].slice(from, from + n).map(Math.abs)) || 0.2;
-  const dq = Math.max(q1 - q0, least(4, q0)), dp = Math.max(p1 - p0, least(4 + n, p0));
+  // Sizes are those of the data alone, but for states that do not move at all.
+  const n = scene.coordinates.length, least = (from, q) => Math.max(1e-3 * Math.abs(q),
+    (steps > 0 ? 1e-9 : 0.2) * Math.max(...(rows[0] || [0]).slice(from, from + n).map(Math.abs)));
+  const dq = Math.max(q1 - q0, least(4, q0)) || 0.2;
+  const dp = Math.max(p1 - p0, least(4 + n, p0)) || 0.2;
   const inside = phaseBox && stood === (steps === 0) && q0 >= phaseBox[0] && q1 <= phaseBox[1] &&
     p0 >= phaseBox[2] && p1 <= phaseBox[3];
   if (inside) return;

@@ -227,7 +227,7 @@ async function start() {
   }
   list = runs;
   steps = due = 0;
-  profile = 1e-9;
+  profile = 0;
   histories = list.map(() => new NevhHistory());
   trails = list.map(() => []);
   paths = list.map(() => []);

@@ -5,7 +5,8 @@
 // Each page has one scene.  Where it says that the energy error of one scheme passes
 // that of the other, it is to be so in half a minute of its speed, and not before the
 // scheme that is passed has shown what its error is; with a step of a fortieth, the
-// contrast, it is not so.
+// contrast, it is not so.  The speed shows some of the scene's steps in a second, and not
+// thousands.
 import { readFileSync } from "node:fs";
 import { gunzipSync } from "node:zlib";
 import { basename } from "node:path";
@@ -55,7 +56,9 @@ const parted = ([kept, other]) => {
 };
 for (const file of process.argv.slice(2)) {
   const page = await opened(readFileSync(file, "utf8")), { lesson } = page.given;
-  const name = basename(file, ".html");
+  const name = basename(file, ".html"), { rate, step } = page.scene.run;
+  check(rate >= 1.5 * step && rate <= 2000 * step,
+    `${name}: t grows by ${rate} a second, by steps of ${step}`);
   if (lesson.why) {
     console.log(`${name}: not here, ${lesson.why}`);
     continue;

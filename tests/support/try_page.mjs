@@ -386,3 +386,8 @@ await tried("pendulum", "speed=3&integrators=verlet,rk4,euler,gauss4", async (pa
   check(more < heap + 800000, `${more} bytes, ${heap} before`);
 });
 ended();
+// Small momenta fill their axis.
+await tried("damped", "", async (page) => {
+  check(await page.until("steps > 20"), "nothing moves");
+  check(await page.until("phaseBox[3] - phaseBox[2] < 2e-10"), "an axis of nothing");
+});

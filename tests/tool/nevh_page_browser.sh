@@ -17,6 +17,10 @@ exits 0 page kepler-0.9 -o $work/kepler-0.9.html
 exits 0 page henon-heiles -o $work/henon-heiles.html
 sed '/^\[picture\]/,/^$/d' "$srcdir/scenes/kapitza.nevh" >$work/kapitza.nevh
 exits 0 page $work/kapitza.nevh -o $work/kapitza.html
+printf '%s\n' '[coordinates]' 'x = 1e-6' '[effects]' 'K = p_x^2/(2*1e-6)' 'V = 1e-3*x^2/2' \
+    '[friction]' 'drag = x: 2' '[labels]' 't = s' '[run]' 'dt = 0.01' 't_end = 6' \
+    >$work/damped.nevh
+exits 0 page $work/damped.nevh -o $work/damped.html
 # Exact gradients: differences multiply what C libraries' sines differ by.
 cp "$srcdir/scenes/double-pendulum.nevh" $work
 printf '\n[run]\ngradient = exact\n' >>$work/double-pendulum.nevh

@@ -17,6 +17,15 @@ for scene in pendulum kepler henon-heiles elastic-pendulum coupled-pendulums \
     exits 0 page $scene -o $work/$scene.html
     pages="$pages $work/$scene.html"
 done
+# Seconds that are too short for their motion, and too long: NAME FREQUENCY DT T_END.
+in_seconds() {
+    printf '%s\n' '[coordinates]' 'x = 1' '[effects]' 'K = p_x^2/2' "V = ($2*x)^2/2" \
+        '[labels]' 't = s' '[run]' "dt = $3" "t_end = $4" >$work/$1.nevh
+    exits 0 page $work/$1.nevh -o $work/$1.html
+    pages="$pages $work/$1.html"
+}
+in_seconds ion 6.283e6 2.5e-8 1e-4
+in_seconds satellite 1e-3 100 2000000
 # Friction or a drive: none of the schemes keeps what it takes.
 for scene in damped-driven-pendulum kapitza; do
     exits 0 page $scene -o $work/driven.html

@@ -19,6 +19,8 @@ static const double tolerable = 0.5; /* one that is not */
 static const double level = 4;       /* by which bounded errors grow */
 static const double longest = 64;    /* step tried, in those of the scene */
 static const double stays = 1.5; /* times of crossings, until which they last */
+static const double few = 30;    /* steps that show some of a motion */
+static const double many = 2000; /* steps a second, which no picture shows */
 
 /* Two schemes on one start. */
 typedef struct {
@@ -61,8 +63,11 @@ lesson_pace lesson_usual(nevh_scene *scene) {
     lesson_pace usual = {run->dts ? run->dt[0] : 0.01, 1};
     for (size_t i = 1; i < run->dts; i++)
         usual.dt = fmin(usual.dt, run->dt[i]);
-    double span = (run->t_end - run->t_start) / 400;
-    if (!unit || strcmp(unit, "s") != 0)
+    double span = (run->t_end - run->t_start) / 400, most = usual.dt;
+    for (size_t i = 0; i < run->dts; i++)
+        most = fmax(most, run->dt[i]);
+    if (!unit || strcmp(unit, "s") != 0 || few * most > watched ||
+        many * usual.dt < 1)
         usual.rate = fmax(40 * usual.dt,
                           isfinite(span) ? fmin(600 * usual.dt, span) : 0);
     return usual;
