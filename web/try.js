@@ -10,7 +10,7 @@ function lessonText() {
   const [kept, other] = lesson.schemes, after = lesson.crossing / lessonRate();
   if (lesson.why === 0 && after < 0.5)
     return `At dt = ${lesson.dt} the energy error of ${other} is the larger one from the ` +
-      `start, and grows; that of ${kept} does not.`;
+      `start; that of ${kept} stays bounded.`;
   if (lesson.why === 0)
     return `The energy error of ${other} grows and passes that of ${kept}, which stays ` +
       `bounded, at t = ${timeText(scene.run.t_start + lesson.crossing)}: after ` +

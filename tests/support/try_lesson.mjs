@@ -68,6 +68,7 @@ for (const file of process.argv.slice(2)) {
   const words = errors.map((list, i) => lesson.schemes[i] + " " +
     Math.max(...list).toExponential(1)).join(", ");
   console.log(`${name}: dt ${lesson.dt}, parts after ${after.toFixed(1)} s: ${words}`);
+  check(errors.flat().every((v) => v < 1e3), `${name}: is unstable: ${words}`);
   check(parted(errors), `${name}: does not part: ${words}`);
   check(after <= 20, `${name}: parts after ${after} s`);
   if (after > 1)

@@ -13,7 +13,7 @@ command -v node >/dev/null 2>&1 || {
 }
 pages=
 for scene in pendulum kepler henon-heiles elastic-pendulum coupled-pendulums \
-    double-pendulum figure-eight coupled-oscillators; do
+    double-pendulum figure-eight coupled-oscillators penning-trap; do
     exits 0 page $scene -o $work/$scene.html
     pages="$pages $work/$scene.html"
 done

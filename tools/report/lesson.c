@@ -3,7 +3,8 @@
    A scheme that is not symplectic is often far more accurate at first: its energy
    error, which grows, passes the bounded one of a symplectic scheme only later, the
    sooner the longer the step is.  Looked for is the smallest step at which that is
-   seen within half a minute, at a speed at which the motion is seen as well.  The
+   seen within half a minute, at a speed at which the motion is seen as well; where the
+   scene's is one with which the other scheme is unstable, a shorter one.  The
    page's module has this file, too, which therefore uses public functions alone.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "lesson.h"
@@ -12,15 +13,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SPEEDS = 4, BINS = 480, MOST_TRIALS = 48 };
+enum { SPEEDS = 4, BINS = 480, MOST_TRIALS = 48, MOST_SHORTER = 6 };
 static const double watched = 20; /* seconds until the errors have crossed */
+static const double away = 1e3;   /* an error of a scheme that is unstable */
 static const double fine = 0.1; /* an error that is small beside the energies */
 static const double tolerable = 0.5; /* one that is not */
 static const double level = 4;       /* by which bounded errors grow */
 static const double longest = 64;    /* step tried, in those of the scene */
-static const double stays = 1.5; /* times of crossings, until which they last */
-static const double few = 30;    /* steps that show some of a motion */
+static const double few = 30;        /* steps that show some of a motion */
 static const double many = 2000; /* steps a second, which no picture shows */
+static const double stays = 1.5; /* times of crossings, until which they last */
 
 /* Two schemes on one start. */
 typedef struct {
@@ -55,6 +57,7 @@ typedef struct {
 
 typedef struct {
     double dt, crossing, error; /* crossing NAN: there was none */
+    bool lost;                  /* the other one ran away */
 } trial;
 
 lesson_pace lesson_usual(nevh_scene *scene) {
@@ -147,6 +150,7 @@ static size_t try_step(const question *x, trial *result) {
     }
     bool stayed = !kept.status && kept.most <= fmin(tolerable, level * half);
     result->error = stayed ? kept.most : INFINITY;
+    result->lost = !(other.most < away);
     side_free(&kept);
     side_free(&other);
     return 2 * done;
@@ -168,7 +172,7 @@ static bool choose(const question *x, const trial tried[], size_t count,
     for (int k = 0; k < SPEEDS; k++)
         for (size_t i = 0; i < count; i++) {
             double rate = x->rate * (1 << k);
-            if (tried[i].error <= limit &&
+            if (tried[i].error <= limit && !tried[i].lost &&
                 tried[i].crossing <= watched * rate) {
                 *found = (lesson){.why = FOUND,
                                   .dt = tried[i].dt,
@@ -186,14 +190,19 @@ static lesson find(const question *x) {
     lesson found = {.why = OPEN, .dt = x->dt, .rate = x->rate};
     size_t count = 0, used = 0;
     double dt = next_step(x->dt * (1 - 1e-6));
-    for (int broken = 0; count < MOST_TRIALS && broken < 2;
-         dt = next_step(dt)) {
-        tried[count] = (trial){.dt = dt};
-        used += try_step(x, &tried[count]);
-        broken = isfinite(tried[count].error) ? 0 : broken + 1;
-        if (!broken)
+    bool first = true;
+    for (int broken = 0; count < MOST_TRIALS && broken < 2;) {
+        trial *one = &tried[count++];
+        *one = (trial){.dt = dt};
+        used += try_step(x, one);
+        first = first && one->lost && count < MOST_SHORTER;
+        broken = isfinite(one->error) && !one->lost ? 0 : broken + !first;
+        if (!broken && !first)
             found.why = LATE;
-        if (choose(x, tried, ++count, fine, &found) && found.faster == 0)
+        if (!broken && dt < x->dt)
+            found.dt = dt;
+        dt = next_step(first ? 0.4 * dt : dt);
+        if (choose(x, tried, count, fine, &found) && found.faster == 0)
             return found;
         if (used > x->most_steps || dt > longest * x->dt)
             break;
