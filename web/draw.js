@@ -186,7 +186,8 @@ function drawErrors() {
     "t" + unit(scene.t_label), "|energy error|", (v) => "1e" + v);
   histories.forEach((h, i) => {
     if (list[i].width > 1) return;
-    const points = nevhSpans(h.t, h.most.map(Math.log10), own[0], own[1], 120);
+    let most = 0;
+    const points = h.t.flatMap((t, j) => [t, Math.log10(most = Math.max(most, h.most[j]))]);
     dashed(pen, i);
     errors.line(points);
     pen.setLineDash([]);

@@ -184,22 +184,6 @@ function nevhContour(values, nx, ny, box, level) {
   return out;
 }
 
-// The largest value in each of so many spans of a range of times and in the five spans
-// before it: [time, value, ...].
-function nevhSpans(t, values, from, to, count) {
-  const out = [], by = (to - from) / count;
-  let span = -1;
-  for (let i = 0; i < t.length; i++) {
-    const here = Math.floor((t[i] - from) / by);
-    if (here !== span) out.push(t[i], values[i]);
-    else out[out.length - 1] = Math.max(out[out.length - 1], values[i]);
-    span = here;
-  }
-  const most = out.filter((_, i) => i % 2);
-  return out.map((v, i) => i % 2
-    ? Math.max(...most.slice(Math.max(0, (i - 11) / 2), (i + 1) / 2)) : v);
-}
-
 // The largest |error| in each of at most 1200 spans of time, and the state in the
 // plane at their beginnings.
 class NevhHistory {

@@ -335,6 +335,22 @@ await tried("henon-heiles", "", async (page) => {
   const off = await page.evaluate(`(() => { setPlaying(false); return Math.hypot(
     pictures[0][0] - rows[0][4], pictures[0][1] - rows[0][5]); })()`);
   check(off === 0, "draws another point, off by " + off);
+  // The curves of the errors cross where the lesson says so.
+  const { falls, crossing, said } = await page.evaluate(`(async () => {
+    await quiet();
+    while (rows[0][0] < 1.2 * lesson.crossing + seconds()) await go(20);
+    const lines = [];
+    errors.line = (points) => lines.push(points);
+    drawErrors();
+    delete errors.line;
+    const [kept, other] = lines;
+    const below = (i) => !(other[i + 1] > kept[i + 1]);
+    let last = 0;
+    for (let i = 0; i < kept.length; i += 2) if (below(i)) last = i;
+    return { falls: kept.some((v, i) => i % 2 && v < kept[i - 2]), crossing: kept[last],
+      said: lesson.crossing }; })()`);
+  check(!falls, "the curve of the largest error falls");
+  check(Math.abs(crossing / said - 1) < 0.1, `the curves cross at ${crossing}, not ${said}`);
 });
 // One coordinate without a picture is drawn against time; a pendulum that stands on its
 // head is shown about the top, in one piece, over levels of all that is shown.
@@ -361,6 +377,11 @@ await tried("kapitza", "", async (page) => {
   await page.evaluate("at('share').click()");
   check(await page.until("at('shared').textContent", 10), "does not say what it shares");
 });
+// Small momenta fill their axis.
+await tried("damped", "", async (page) => {
+  check(await page.until("steps > 20"), "nothing moves");
+  check(await page.until("phaseBox[3] - phaseBox[2] < 2e-10"), "an axis of nothing");
+});
 // A turn takes some seconds, also where steps are short.
 await tried("kepler-0.9", "speed=0", async (page) => {
   check(await page.until("steps > 5"), "nothing moves");
@@ -386,8 +407,3 @@ await tried("pendulum", "speed=3&integrators=verlet,rk4,euler,gauss4", async (pa
   check(more < heap + 800000, `${more} bytes, ${heap} before`);
 });
 ended();
-// Small momenta fill their axis.
-await tried("damped", "", async (page) => {
-  check(await page.until("steps > 20"), "nothing moves");
-  check(await page.until("phaseBox[3] - phaseBox[2] < 2e-10"), "an axis of nothing");
-});

@@ -141,7 +141,7 @@ static size_t try_step(const question *x, trial *result) {
         done += each;
         if (t < end / 2)
             half = kept.most;
-        if (!(other.bin > kept.most))
+        if (!(other.most > kept.most))
             result->crossing = NAN;
         else if (isnan(result->crossing))
             result->crossing = t;
