@@ -26,6 +26,7 @@ function show() {
     : scene.parts.length ? "The configuration" + (scene.parts.some((p) => p.kind === "bob")
       ? ": drag a body to a new start." : ".") : names.length === 1 ? names[0] + " against time."
     : "All coordinates, side by side.";
+  at("word").textContent = errorWord();
   showView();
   showEffects();
   showSchemes();
@@ -45,7 +46,8 @@ function showView() {
   const one = section(), k = one ? planeOf(one) : -1, { length } = scene.coordinates;
   const click = k >= 0 && (one.every ? length === 1 : length === 2);
   at("phase-caption").textContent = !one ? "Coordinate and momentum" +
-    (length === 1 ? ", over levels of H" : "") + ": drag to a new start."
+    (length === 1 ? ", over levels of H" + (scene.timed ? " at t = " + scene.run.t_start : "") +
+      (scene.friction ? ", without friction" : "") : "") + ": drag to a new start."
     : (one.every ? "Every " + +digits(one.every, 4) + after(scene.t_label)
       : "When " + one.left + " = " + one.right) + ", by " + S.schemes[0] +
       (click ? ": click to start an orbit" + (one.every ? "." : " of the same energy.") : ".");

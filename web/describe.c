@@ -184,7 +184,10 @@ static void put_run(json *j, const page *g) {
 
 char *page_scene_text(page *g) {
     json j = {0};
-    put(&j, "{\"balance\":%s", g->balance ? "true" : "false");
+    bool timed = !(nevh_system_traits(g->system) & NEVH_AUTONOMOUS);
+    bool friction = nevh_system_friction(g->system, NULL);
+    put(&j, "{\"balance\":%d,\"timed\":%d,\"friction\":%d", g->balance, timed,
+        friction);
     put_key(&j, "title", nevh_scene_title(g->scene));
     put_key(&j, "source", nevh_scene_source(g->scene));
     put_key(&j, "t_label", nevh_scene_label(g->scene, "t"));

@@ -183,7 +183,7 @@ function drawErrors() {
     powers.push(v);
   pen.save();
   errors.axes(nevhTicks(errors.box[0], errors.box[1]), powers,
-    "t" + unit(scene.t_label), "|energy error|", (v) => "1e" + v);
+    "t" + unit(scene.t_label), `|${errorWord()}|`, (v) => "1e" + v);
   histories.forEach((h, i) => {
     if (list[i].width > 1) return;
     let most = 0;
@@ -195,6 +195,8 @@ function drawErrors() {
   });
   pen.restore();
 }
+// The balance: H less what friction and a drive have given.
+const errorWord = () => (scene.balance ? "balance" : "energy") + " error";
 const unit = (label) => label ? " (" + label + ")" : "";
 const after = (label) => label ? " " + label : "";
 // What makes p dq/dt an energy, an angle being a number, where the scene has none.
@@ -393,5 +395,5 @@ function spoken() {
   const state = scene.coordinates.slice(0, 6).map((c, k) =>
     c.name + " = " + digits(rows[0][4 + k], 4)).join(", ");
   return steps + (steps === 1 ? " step" : " steps") + ", t = " + digits(rows[0][0], 4) + ": " + S.schemes[0] +
-    " has " + state + ", energy error " + rows[0][2].toExponential(1) + ".";
+    " has " + state + ", " + errorWord() + " " + rows[0][2].toExponential(1) + ".";
 }

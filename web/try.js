@@ -7,19 +7,19 @@
 const timeText = (t) => +digits(t, 2) + after(scene.t_label);
 function lessonText() {
   if (!lesson) return "";
-  const [kept, other] = lesson.schemes, after = lesson.crossing / lessonRate();
+  const [kept, other] = lesson.schemes, after = lesson.crossing / lessonRate(), word = errorWord();
   if (lesson.why === 0 && after < 0.5)
-    return `At dt = ${lesson.dt} the energy error of ${other} is the larger one from the ` +
+    return `At dt = ${lesson.dt} the ${word} of ${other} is the larger one from the ` +
       `start; that of ${kept} stays bounded.`;
   if (lesson.why === 0)
-    return `The energy error of ${other} grows and passes that of ${kept}, which stays ` +
+    return `The ${word} of ${other} grows and passes that of ${kept}, which stays ` +
       `bounded, at t = ${timeText(scene.run.t_start + lesson.crossing)}: after ` +
       `${Math.round(after)} s at this speed.`;
   if (lesson.why === 1)
-    return `Not here: up to t = ${timeText(lesson.reached)} the energy error of ${other} ` +
+    return `Not here: up to t = ${timeText(lesson.reached)} the ${word} of ${other} ` +
       `stays below that of ${kept}, at every step at which both work.`;
   if (lesson.why === 2)
-    return `Not here: at no step does the energy error of ${kept} stay bounded and small, ` +
+    return `Not here: at no step does the ${word} of ${kept} stay bounded and small, ` +
       `so ${other} has nothing to pass.`;
   return `Whether ${other} passes ${kept} here would take too long to find out.`;
 }
@@ -60,7 +60,8 @@ function tries() {
   if (scene.coordinates.length <= 3 && !scene.balance)
     list.push(["Areas", "a disc keeps its area with a symplectic scheme; with euler its area changes",
       () => set({ disc: true, speed: Math.min(S.speed, 0), schemes: [keeper(), "euler"] })]);
-  list.push(["Against the exact orbit", `${first} keeps its energy, and is out of step`,
+  list.push(["Against the exact orbit",
+    first + (scene.balance ? " is" : " keeps its energy, and is") + " out of step",
     () => set({ exact: true })]);
   if (scene.sections.length && S.section < 0)
     list.push([scene.sections[0].every ? "Stroboscope" : "Poincaré section",
@@ -139,7 +140,7 @@ function factsText() {
   return `mine: order ${mine.order}, symplectic: ${mine.symplectic}, symmetric: ` +
     mine.symmetric + (mine.gradients ? `, ${mine.gradients} gradients a step` : "") +
     (mine.limit > 0 ? `, stable up to ω dt = ${+digits(mine.limit, 3)}` : "") +
-    (found ? `. Largest energy error up to t = ${timeText(found.t)}: ` +
+    (found ? `. Largest ${errorWord()} up to t = ${timeText(found.t)}: ` +
       found.error.toExponential(1) : "") + "." +
     (mine.lacks ? ` For more: ${mine.lacks}.` : "");
 }

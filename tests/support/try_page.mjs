@@ -372,14 +372,19 @@ await tried("kapitza", "", async (page) => {
     "offers scenes where there is one");
   check(await page.evaluate("/● verlet .*■/.test(at('legend').textContent)"),
     "no legend: " + await page.evaluate("at('legend').textContent"));
+  check(/levels of H at t = 0:/.test(await page.evaluate(
+    "at('phase-caption').textContent")), "levels are not said to be those of the start");
   check(await page.evaluate("momentumUnit(scene.coordinates[0])") === " (J s)",
     "the momentum has no unit");
   await page.evaluate("at('share').click()");
   check(await page.until("at('shared').textContent", 10), "does not say what it shares");
 });
-// Small momenta fill their axis.
+// What is drawn of a scene in which no energy is kept is said; small momenta fill their axis.
 await tried("damped", "", async (page) => {
   check(await page.until("steps > 20"), "nothing moves");
+  check(await page.evaluate("at('word').textContent") === "balance error", "another word");
+  check(/levels of H, without friction/.test(await page.evaluate(
+    "at('phase-caption').textContent")), "levels are not said to be without friction");
   check(await page.until("phaseBox[3] - phaseBox[2] < 2e-10"), "an axis of nothing");
 });
 // A turn takes some seconds, also where steps are short.
