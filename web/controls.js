@@ -43,8 +43,7 @@ function show() {
 }
 // The plane, or a section.
 function showView() {
-  const one = section(), k = one ? planeOf(one) : -1, { length } = scene.coordinates;
-  const click = k >= 0 && (one.every ? length === 1 : length === 2);
+  const one = section(), click = one && clicks(one), { length } = scene.coordinates;
   at("phase-caption").textContent = !one ? "Coordinate and momentum" +
     (length === 1 ? ", over levels of H" + (scene.timed ? " at t = " + scene.run.t_start : "") +
       (scene.friction ? ", without friction" : "") : "") + ": drag to a new start."

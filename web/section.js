@@ -15,6 +15,8 @@ const section = () => scene.sections[S.section];
 // The coordinate in whose plane the section is; -1: it shows something else.
 const planeOf = (one) => scene.coordinates.findIndex((c) =>
   one.items[0] === c.name && one.items[1] === "p_" + c.name);
+const clicks = (one) => planeOf(one) >= 0 &&
+  scene.coordinates.length === (one.every ? 1 : 2);
 
 async function restartSection() {
   orbits = [];
@@ -70,6 +72,9 @@ function sectionRange() {
   return [x0 - dx, x1 + dx, y0 - dy, y1 + dy];
 }
 const sectionAt = (q, c) => c && c.period > 0 ? q - c.period * Math.round(q / c.period) : q;
+// The start's orbit is the scheme's; those that were clicked have colours of no scheme.
+const orbitColour = (i) => i ? ["#777", "#7b61c9", "#7a8b1f"][i % 3]
+  : nevhColour(nevhLook(S.schemes[0]));
 function drawSection() {
   const { items } = section(), k = planeOf(section()), c = scene.coordinates[k];
   phase.box = sectionRange();
@@ -78,7 +83,7 @@ function drawSection() {
   phase.axes(nevhTicks(phase.box[0], phase.box[1]), nevhTicks(phase.box[2], phase.box[3]),
     items[0] + unit(c ? c.label : ""), items[1] + (c ? momentumUnit(c) : ""));
   orbits.forEach((points, i) => {
-    pen.fillStyle = nevhColour(i % 4);
+    pen.fillStyle = orbitColour(i);
     const size = (points.length < 400 ? 1.3 : 0.8) * nevhType;
     for (let j = 0; j < points.length; j += 2)
       pen.fillRect(phase.x(sectionAt(points[j], c)) - size, phase.y(points[j + 1]) - size,

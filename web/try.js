@@ -58,14 +58,17 @@ function tries() {
     list.push(["A step too long", `${S.limited} is unstable at this dt`, () =>
       set({ dt: +(1.02 * S.limit).toPrecision(4), schemes: [S.limited] })]);
   if (scene.coordinates.length <= 3 && !scene.balance)
-    list.push(["Areas", "a disc keeps its area with a symplectic scheme; with euler its area changes",
+    list.push(["Areas", "a disc keeps its area with a symplectic scheme; with euler it changes",
       () => set({ disc: true, speed: Math.min(S.speed, 0), schemes: [keeper(), "euler"] })]);
   list.push(["Against the exact orbit",
     first + (scene.balance ? " is" : " keeps its energy, and is") + " out of step",
     () => set({ exact: true })]);
-  if (scene.sections.length && S.section < 0)
-    list.push([scene.sections[0].every ? "Stroboscope" : "Poincaré section",
-      "a click in the plane starts an orbit", () => set({ section: 0 })]);
+  const cut = scene.sections.findIndex((one) => one.items.length > 1 &&
+    (one.every || scene.coordinates.length > 1));
+  if (cut >= 0 && S.section < 0)
+    list.push([scene.sections[cut].every ? "Stroboscope" : "Poincaré section",
+      clicks(scene.sections[cut]) ? "a click in the plane starts an orbit" : "",
+      () => set({ section: cut })]);
   for (const e of scene.equations.filter((one) => one.section === "effects").slice(1))
     list.push([(e.on ? "Without " : "With ") + e.name, "", () => use(S.text,
       [...S.changes.filter(([mark, what]) => !"+-".includes(mark) || what !== e.name),
