@@ -362,6 +362,7 @@ function listen() {
   };
   at("scene").onkeydown = at("phase").onkeydown = nudge;
   document.onkeydown = (event) => {
+    if (event.key === "Escape") setWall(false);
     if (event.target.closest("input,textarea,select,button") || event.ctrlKey ||
       event.metaKey || event.altKey) return;
     const key = { " ": "play", s: "step", r: "restart", w: "wall" }[event.key.toLowerCase()];

@@ -177,6 +177,12 @@ await tried("pendulum", "", async (page) => {
   check(await page.until("S.dt === 0.0125 && rows.length > 0"), "takes no step");
   check(await page.evaluate("getComputedStyle(at('effects').closest('.panels')).display")
     === "none", "controls stay on the wall");
+  await page.evaluate("at('wall').focus()");
+  await page.key("Escape");
+  check(await page.until("!document.body.classList.contains('wall')", 5),
+    "Escape does not leave the wall");
+  check(await page.evaluate("document.querySelector('#effects input[name=gravity]').clientWidth")
+    > 150, "a formula has no room");
   check(await page.evaluate("!/Poincar/.test(at('tries').textContent)"),
     "offers a section of one degree of freedom");
 });
