@@ -109,7 +109,7 @@ static NEVH__RARE double nevh__pow_edge(double x, double y) {
 #endif
 
 #ifndef NEVH__NO_ARCS
-/* Of quotients that are too large or too small, and of what may overflow. */
+/* Quotients that are too large or too small, and numbers whose squares overflow. */
 static NEVH__RARE double nevh__atan2_edge(double y, double x) {
     double a = nevh__one_size(y), b = nevh__one_size(x), angle;
     bool left = nevh__one_bits(x) >> 63;

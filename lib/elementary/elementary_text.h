@@ -252,7 +252,7 @@ NEVH__INLINE NEVH__PAIR NEVH__E(log_near)(NEVH__NUMBER m, NEVH__NUMBER power) {
     return NEVH__E(quick)(all.hi, all.lo + (y.lo + power * NEVH__LN2[1]));
 }
 
-/* What a logarithm is where there is none. */
+/* Logarithms of 0, of infinity and of negative numbers. */
 NEVH__INLINE NEVH__NUMBER NEVH__E(log_edges)(NEVH__NUMBER x, NEVH__NUMBER y) {
     NEVH__NUMBER none = NEVH__E(all)(0);
     y = NEVH__E(choose)(NEVH__E(less)(x, NEVH__E(all)(INFINITY)), y, x);
@@ -478,7 +478,7 @@ NEVH__INLINE NEVH__NUMBER NEVH__E(atan)(NEVH__NUMBER x) {
     return NEVH__E(signed)(NEVH__E(atan_near)(size).hi, x);
 }
 
-/* Of positive numbers whose quotient is from 2^-100 to 2^100. */
+/* Positive numbers whose quotient is from 2^-100 to 2^100. */
 NEVH__INLINE NEVH__NUMBER NEVH__E(atan2_near)(NEVH__NUMBER y, NEVH__NUMBER x,
                                               NEVH__BITS left) {
     NEVH__PAIR q = {y / x, y};
