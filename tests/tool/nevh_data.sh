@@ -31,6 +31,21 @@ exits 0 run pendulum-filmed --data $work/frames.csv
 has '^# left out, the scene has none of that name: frame$'
 has 'energy,x_residual$'
 
+# held FILE: how many of the measured points of a script are within the axes.  They have a
+# mark, and a colour, that no integrator has.
+held() {
+    awk 'NR == FNR && /^set [xy]range/ {
+            split($3, r, ":"); low[$2] = substr(r[1], 2) + 0; high[$2] = r[2] + 0 }
+        NR == FNR && /title "measured"/ && /pointtype 1 / && /rgb .#000000/ {
+            match($0, /[$]series[0-9]+/)
+            name = substr($0, RSTART, RLENGTH) }
+        NR == FNR { next }
+        /^[$]series/ { here = $1 == name; next }
+        /^EOD/ { here = 0 }
+        here && $1 >= low["xrange"] && $1 <= high["xrange"] &&
+            $2 >= low["yrange"] && $2 <= high["yrange"] { n++ }
+        END { print n + 0 }' "$1" "$1"
+}
 exits 0 run pendulum-filmed --set $truth --data pendulum-filmed.csv \
     --plot-kind time --plot $work/time.svg --keep-plot-script $work/time.gp
 grep -q 'measured' $work/time.gp || fails "draws no points"
@@ -39,13 +54,17 @@ test "$(grep -c '0.787520\|0\.78752' $work/time.gp)" -ge 1 ||
 exits 0 run pendulum-filmed --set $truth --data pendulum-filmed.csv \
     --plot-kind phase --columns x:y --keep-plot-script $work/phase.gp
 grep -q 'measured' $work/phase.gp || fails "draws no points"
+# Those of a wrong length are beyond the curve, and none is cut off.
+exits 0 run pendulum-filmed --data pendulum-filmed.csv \
+    --plot-kind phase --columns x:y --keep-plot-script $work/phase.gp
+test "$(held $work/phase.gp)" = 121 || fails "cuts points off: $(held $work/phase.gp) of 121"
 exits 2 run pendulum-filmed --data pendulum-filmed.csv --plot-kind phase \
     --keep-plot-script $work/none.gp
 says 'plot-kind phase draws over each other'
-printf 't,phi,p_phi\n0,1,0.1\n1,0.5,-0.1\n' >$work/plane.csv
+printf 't,phi,p_phi\n0,1,0.1\n1,0.5,-2.1\n' >$work/plane.csv
 exits 0 portrait pendulum-small --data $work/plane.csv \
     --keep-plot-script $work/portrait.gp
-grep -q 'measured' $work/portrait.gp || fails "draws no points"
+test "$(held $work/portrait.gp)" = 2 || fails "cuts points off"
 exits 2 portrait pendulum-small --data $work/frames.csv \
     --keep-plot-script $work/none.gp
 says 'no column is one of the scene|takes columns phi and p_phi'

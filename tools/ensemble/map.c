@@ -215,7 +215,7 @@ static int draw_measured(map *m, plot *to, const char *x, const char *y,
         return tool_refuse("--data %s: the picture takes columns %s and %s",
                            d->file, x, y);
     size_t series = plot_series(to, name);
-    plot_style(to, series, PLOT_POINTS);
+    plot_style(to, series, PLOT_MEASURED);
     for (size_t i = 0; i < d->points; i++)
         plot_point(to, series, d->value[i * d->columns + column],
                    d->value[i * d->columns + row]);

@@ -97,6 +97,8 @@ static void draw_panels(plot **to, const run_picture *picture,
     size_t y_column = k + 1;
     picture_range across = picture_extent(picture, &k, 1);
     picture_range up = picture_extent(picture, &y_column, 1);
+    picture_hold_measured(picture, c->columns.item[k].name,
+                          c->columns.item[y_column].name, &across, &up);
     for (size_t i = 0; i < picture_columns(picture); i++) {
         char *heading = number ? NULL : picture_heading(picture, i);
         if (*to)

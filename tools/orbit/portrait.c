@@ -103,8 +103,15 @@ static double least_angle(double low, double high, double period) {
                                                                       : -half;
 }
 
-/* The range of symplectic integrators, if there are any, with a margin; of an angle
-   a period. */
+static void hold(portrait_window *w, double x, double y) {
+    w->low_x = fmin(w->low_x, x);
+    w->high_x = fmax(w->high_x, x);
+    w->low_y = fmin(w->low_y, y);
+    w->high_y = fmax(w->high_y, y);
+}
+
+/* The range of symplectic integrators, if there are any, and of measured points, with a
+   margin; of an angle a period. */
 static portrait_window find_window(const portrait_job *j) {
     static const double room = 0.2;
     portrait_window w = {INFINITY, -INFINITY, INFINITY, -INFINITY};
@@ -115,11 +122,12 @@ static portrait_window find_window(const portrait_job *j) {
     for (size_t i = 0; i < j->count; i++)
         for (size_t k = 0;
              (is_symplectic(&j->of[i]) || !any) && k < j->of[i].count; k++) {
-            w.low_x = fmin(w.low_x, j->of[i].points[2 * k]);
-            w.high_x = fmax(w.high_x, j->of[i].points[2 * k]);
-            w.low_y = fmin(w.low_y, j->of[i].points[2 * k + 1]);
-            w.high_y = fmax(w.high_y, j->of[i].points[2 * k + 1]);
+            hold(&w, j->of[i].points[2 * k], j->of[i].points[2 * k + 1]);
         }
+    for (size_t i = 0; i < j->data.points; i++) {
+        const double *at = j->data.value + i * j->data.columns;
+        hold(&w, period > 0 ? w.low_x : at[j->x], at[j->p_x]);
+    }
     double least = least_angle(w.low_x, w.high_x, period);
     double x = room * (w.high_x - w.low_x), y = room * (w.high_y - w.low_y);
     x = x > 0 ? x : fmax(1, fabs(w.high_x));
@@ -193,7 +201,7 @@ static void draw_measured(const portrait_job *j, plot *to) {
     const measured *m = &j->data;
     size_t series = m->points ? plot_series(to, "measured") : 0;
     if (m->points)
-        plot_style(to, series, PLOT_POINTS);
+        plot_style(to, series, PLOT_MEASURED);
     for (size_t i = 0; i < m->points; i++) {
         const double *at = m->value + i * m->columns;
         plot_point(to, series, wrapped(j, at[j->x]), at[j->p_x]);

@@ -120,6 +120,8 @@ char *picture_heading(const run_picture *picture, size_t column) {
     return text_print("%s", name);
 }
 
+static const double picture_room = 0.04; /* of a range, at either end */
+
 static void widen(picture_range *e, const orbit *o, const size_t columns[],
                   size_t count) {
     for (size_t i = 0; i < o->rows.count; i++)
@@ -134,7 +136,6 @@ static void widen(picture_range *e, const orbit *o, const size_t columns[],
 
 picture_range picture_extent(const run_picture *picture, const size_t columns[],
                              size_t count) {
-    static const double room = 0.04;
     picture_range first = {INFINITY, -INFINITY}, all;
     widen(&first, picture_orbit(picture, 0), columns, count);
     all = first;
@@ -143,7 +144,7 @@ picture_range picture_extent(const run_picture *picture, const size_t columns[],
     double far = (first.high - first.low) / 2;
     all.low = fmax(all.low, first.low - far);
     all.high = fmin(all.high, first.high + far);
-    double more = all.high > all.low ? room * (all.high - all.low) : 1;
+    double more = all.high > all.low ? picture_room * (all.high - all.low) : 1;
     return (picture_range){all.low - more, all.high + more};
 }
 
@@ -174,6 +175,24 @@ char *picture_cut(run_picture *picture, double turns, double wanted) {
     return text_print("a part of the run: --t-end %g shows all", whole);
 }
 
+void picture_hold_measured(const run_picture *picture, const char *x,
+                           const char *y, picture_range *across,
+                           picture_range *up) {
+    const measured *m = &picture->data;
+    size_t column[] = {measured_find(m, x), measured_find(m, y)};
+    picture_range *of[] = {across, up};
+    if (column[0] == m->columns || column[1] == m->columns)
+        return;
+    for (size_t k = 0; k < 2; k++) {
+        double more = picture_room * (of[k]->high - of[k]->low);
+        for (size_t i = 0; i < m->points; i++) {
+            double value = m->value[i * m->columns + column[k]];
+            of[k]->low = fmin(of[k]->low, value - more);
+            of[k]->high = fmax(of[k]->high, value + more);
+        }
+    }
+}
+
 void picture_measured(const run_picture *picture, plot *to, const char *name,
                       const char *x, const char *y, double period) {
     const measured *m = &picture->data;
@@ -181,8 +200,7 @@ void picture_measured(const run_picture *picture, plot *to, const char *name,
     if (!m->points || across == m->columns || up == m->columns)
         return;
     size_t series = plot_series(to, name);
-    plot_style(to, series, PLOT_POINTS);
-    plot_size(to, series, 0.6);
+    plot_style(to, series, PLOT_MEASURED);
     for (size_t i = 0; i < m->points; i++) {
         const double *value = m->value + i * m->columns;
         double at = x ? value[across] : m->t[i];

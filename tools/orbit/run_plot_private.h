@@ -75,6 +75,10 @@ typedef struct {
 picture_range picture_extent(const run_picture *, const size_t columns[],
                              size_t count);
 
+/* Widens the ranges of a panel so that no measured point of these columns is cut off. */
+void picture_hold_measured(const run_picture *, const char *x, const char *y,
+                           picture_range *across, picture_range *up);
+
 /* Each makes a plot; NULL, with a message printed, where it cannot. */
 #define PLOT_FUNCTION(name, draws, help) plot *plot_##name(run_picture *);
 RUN_PLOTS(PLOT_FUNCTION)

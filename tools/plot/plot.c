@@ -132,7 +132,7 @@ static size_t find_look(const plot *p, const char *name) {
     static const bool grey[PLOT_GUIDE + 1] = {
         [PLOT_BEHIND] = true, [PLOT_REFERENCE] = true, [PLOT_RODS] = true,
         [PLOT_GUIDE] = true,  [PLOT_LEVEL] = true,     [PLOT_SEPARATRIX] = true,
-        [PLOT_CENTRE] = true, [PLOT_SADDLE] = true,
+        [PLOT_CENTRE] = true, [PLOT_SADDLE] = true,    [PLOT_MEASURED] = true,
     };
     size_t look = 0;
     for (size_t i = 0; i < p->count; i++) {

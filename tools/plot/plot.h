@@ -18,6 +18,7 @@ typedef enum {
     PLOT_MARKED,     /* lines with a marker here and there */
     PLOT_BOTH,       /* lines with a marker at each point */
     PLOT_POINTS,     /* markers */
+    PLOT_MEASURED,   /* dark, with a mark that no integrator has */
     PLOT_DOTS,       /* the smaller the more they are */
     PLOT_RINGS,      /* such, but hollow */
     PLOT_RODS,       /* thick grey lines */

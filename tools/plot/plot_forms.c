@@ -37,6 +37,7 @@ static const struct {
     [PLOT_MARKED] = {.width = 1.5, .dash = OF_LOOK, .mark = OWN},
     [PLOT_BOTH] = {.width = 1.5, .dash = OF_LOOK, .mark = OWN},
     [PLOT_POINTS] = {.mark = OWN},
+    [PLOT_MEASURED] = {.colour = "#000000", .mark = PLOT_PLUS, .size = 0.8},
     [PLOT_DOTS] = {.mark = PLOT_DISC},
     [PLOT_RINGS] = {.mark = PLOT_CIRCLE},
     [PLOT_RODS] = {.colour = "#777777", .width = 4},
@@ -109,7 +110,7 @@ plot_look plot_look_of(const plot *p, const series *s) {
         l.size = size * s->size;
     if (s->form == PLOT_MARKED)
         l.every = s->count / MARKS + 1 + s->look;
-    l.many =
-        s->form == PLOT_DOTS || s->form == PLOT_RINGS || s->form == PLOT_POINTS;
+    l.many = s->form == PLOT_DOTS || s->form == PLOT_RINGS ||
+             s->form == PLOT_POINTS || s->form == PLOT_MEASURED;
     return l;
 }

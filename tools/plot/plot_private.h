@@ -199,7 +199,8 @@ plot_screen plot_screen_of(const plot *, size_t panel, const layout *);
 
 /* plot_forms.c: how series look. */
 #define PLOT_USUAL_SIZE 0.7
-enum { /* as gnuplot numbers them: one more is filled */
+enum { /* as gnuplot numbers them: from squares on one more is filled */
+       PLOT_PLUS = 1,
        PLOT_CROSS = 2,
        PLOT_SQUARE = 4,
        PLOT_CIRCLE = 6,

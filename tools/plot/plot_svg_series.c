@@ -184,6 +184,7 @@ static const struct {
     {PLOT_SQUARE, 4, {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}},
     {PLOT_TRIANGLE, 3, {{0, -1.33}, {-1.33, 0.67}, {1.33, 0.67}}},
     {PLOT_DIAMOND, 4, {{0, -1.41}, {1.41, 0}, {0, 1.41}, {-1.41, 0}}},
+    {PLOT_PLUS, 4, {{-1.3, 0}, {1.3, 0}, {0, -1.3}, {0, 1.3}}},
     {PLOT_CROSS, 4, {{-1, -1}, {1, 1}, {-1, 1}, {1, -1}}},
 };
 enum { SHAPES = sizeof shapes / sizeof *shapes };
@@ -195,7 +196,8 @@ static pair corner(pair middle, const double at[2], double size) {
 
 static void put_mark(path *p, int mark, double size, pair at) {
     size_t i = 0;
-    while (i < SHAPES && shapes[i].mark != mark / 2 * 2)
+    bool open = mark <= PLOT_CROSS; /* two lines */
+    while (i < SHAPES && shapes[i].mark != (open ? mark : mark / 2 * 2))
         i++;
     if (i == SHAPES) { /* a circle */
         double r = round(20 * radius * size) / 20;
@@ -206,11 +208,11 @@ static void put_mark(path *p, int mark, double size, pair at) {
     }
     path_move(p, corner(at, shapes[i].at[0], size));
     for (size_t k = 1; k < shapes[i].points; k++)
-        if (mark == PLOT_CROSS && k == 2)
+        if (open && k == 2)
             path_move(p, corner(at, shapes[i].at[k], size));
         else
             path_line(p, corner(at, shapes[i].at[k], size));
-    if (mark != PLOT_CROSS)
+    if (!open)
         path_close(p);
 }
 
@@ -222,7 +224,7 @@ static void put_marks(FILE *f, const char *colour, int mark, double size,
         put_discs(f, colour, size, point, count);
         return;
     }
-    if (mark % 2)
+    if (mark > PLOT_CROSS && mark % 2)
         fprintf(f, "<path fill='%s' d='M0 0", colour);
     else
         fprintf(f, "<path fill='none' stroke='%s' stroke-width='%g' d='M0 0",
