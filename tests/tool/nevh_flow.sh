@@ -193,6 +193,30 @@ exits 1 flow $work/cr3bp.nevh --plot $work/flow.svg --keep-plot-script $work/scr
 grep -q '^set title "gauss4: sum of areas kept until t = 1, then failed"' $work/script ||
     { fails "has another title"; grep '^set title' $work/script; }
 
+# A ratio near 0 is told as the table has it.  The note names dt and
+# the last time that has a shape; a panel that ends before says when.
+sed 's/x: 0.1/x: 0.5/; s/^t_end.*/t_end = 100/' $work/damped.nevh >$work/strong.nevh
+exits 0 flow $work/strong.nevh --integrators verlet --gradient exact \
+    --shape 'disc(x = 1, p_x = 0, 0.3)' --at 1,100 --format csv \
+    --plot $work/flow.svg --keep-plot-script $work/script
+at_end=$(rows | awk -F, '$5 == 100 { print $7 }')
+sed -n 's/^set title "verlet: area × \([0-9.e+-]*\) until.*/\1/p' $work/script |
+    awk -v all="$at_end" '{ exit !(NR == 1 && all > 0 && ($1 / all - 1)^2 < 1e-6) }' ||
+    { fails "has another ratio than $at_end"; grep '^set title' $work/script; }
+exits 0 flow pendulum --at 1,10,100 --plot $work/flow.svg --keep-plot-script $work/script
+grep -q '^set label "dt = 0.1 s; gradient central4; t = 0 ... 10 s; cat' $work/script ||
+    { fails "has another note"; grep '^set label "dt' $work/script; }
+grep -q 'drawn until' $work/script && fails "ends panels at different times"
+exits 0 flow pendulum --integrators verlet,implicit-euler --at 1,10,100 \
+    --plot $work/flow.svg --keep-plot-script $work/script
+grep -q '^set title "implicit-euler: area × 0.0002[0-9]* until t = 10 s"' $work/script &&
+    grep -q '^set title "verlet: area kept until t = 100 s"' $work/script ||
+    { fails "has other titles"; grep '^set title' $work/script; }
+exits 0 flow pendulum --integrators ralston,euler --at 5,10,20,30 \
+    --plot $work/flow.svg --keep-plot-script $work/script
+grep -q '^set title "ralston: area × 1.135 until t = 30 s, drawn until t = 20 s"' $work/script &&
+    grep -q '^set title "euler: area × 0.1723 until t = 30 s"' $work/script ||
+    { fails "has other titles"; grep '^set title' $work/script; }
 # The default shape does not run away with the first integrator; what fails far out
 # names where.
 exits 0 flow pendulum --integrators euler --dt 0.1 --t-end 1

@@ -108,7 +108,12 @@ void stop_notes(const plan *, const row rows[], size_t count, list *notes);
 table *records(const plan *, const row rows[], size_t count);
 /* Says on stderr which row failed and why; TOOL_FAILED. */
 int row_fails(const plan *, const row *);
-/* row_notes.c: observed_order, of rows with the same scheme beside each other;
+/* row_notes.c: whether two slopes of errors over steps are of one order: they differ most
+   where an error changes its sign, and next to rounding. */
+bool orders_agree(double a, double b);
+/* Steps so close that their errors tell of their phases, not of the order. */
+bool steps_are_close(double a, double b);
+/* observed_order, where that of a pair of steps next to it agrees or there is no other, of rows with the same scheme beside each other;
    notes of settings, gradients, scale and what holds for some rows. */
 void observe_orders(row rows[], size_t count);
 void row_notes(const options *, const plan *, const row rows[], size_t count,

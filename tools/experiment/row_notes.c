@@ -13,26 +13,56 @@ static bool measures_order(const row *r) {
            r->energy.max > fmax(1e-13, above * r->energy.rounding);
 }
 
-/* Steps so close that their errors tell of their phases, not of the order. */
-static bool is_close(double a, double b) {
+bool steps_are_close(double a, double b) {
     static const double apart = 1.2;
     return a != b && a < apart * b && b < apart * a;
 }
 
-/* From the row of the same scheme and the dt before. */
+bool orders_agree(double a, double b) {
+    static const double near = 0.5;
+    return fabs(a - b) <= near;
+}
+
+static bool is_same(const row *a, const row *b) {
+    return a->integrator == b->integrator && a->gradient == b->gradient;
+}
+
+/* The slope from the row of the same scheme and the dt before; NAN where there is none. */
+static double slope_before(const row rows[], size_t i) {
+    const row *b = &rows[i];
+    for (size_t k = i; k-- > 0;) {
+        const row *a = &rows[k];
+        if (!is_same(a, b) || steps_are_close(a->dt, b->dt))
+            continue;
+        return measures_order(a) && measures_order(b) && a->dt != b->dt
+                   ? log(a->energy.max / b->energy.max) / log(a->dt / b->dt)
+                   : NAN;
+    }
+    return NAN;
+}
+
+/* Of those of one scheme that have one, the slope next to that of row i. */
+static double neighbour(const row rows[], const double slope[], size_t count,
+                        size_t i, bool after) {
+    for (size_t k = i; after ? ++k < count : k-- > 0;)
+        if (is_same(&rows[k], &rows[i]) && isfinite(slope[k]))
+            return slope[k];
+    return NAN;
+}
+
 void observe_orders(row rows[], size_t count) {
+    double *slope = tool_allocate(count, sizeof *slope);
     for (size_t i = 0; i < count; i++)
-        for (size_t k = i; k-- > 0;) {
-            row *b = &rows[i];
-            const row *a = &rows[k];
-            if (a->integrator != b->integrator || a->gradient != b->gradient ||
-                is_close(a->dt, b->dt))
-                continue;
-            if (measures_order(a) && measures_order(b) && a->dt != b->dt)
-                b->observed_order =
-                    log(a->energy.max / b->energy.max) / log(a->dt / b->dt);
-            break;
-        }
+        slope[i] = slope_before(rows, i);
+    for (size_t i = 0; i < count; i++) {
+        double before = neighbour(rows, slope, count, i, false),
+               after = neighbour(rows, slope, count, i, true);
+        bool alone = isnan(before) && isnan(after);
+        if (isfinite(slope[i]) && (alone || orders_agree(slope[i], before) ||
+                                   orders_agree(slope[i], after)))
+            rows[i].observed_order = slope[i];
+    }
+    free(slope);
 }
 
 static void note_gradients(const plan *p, list *notes) {

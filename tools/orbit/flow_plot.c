@@ -214,40 +214,91 @@ static int digits_from_1(double ratio) {
     return apart > 0 ? (int)fmin(fmax(own, 1 - floor(log10(apart))), 12) : own;
 }
 
+static char *ratio_text(double ratio) {
+    static const double small = 1e-4, large = 1e6;
+    return fabs(ratio) < small || fabs(ratio) >= large
+               ? text_print("%.4g", ratio)
+               : text_print("%.*f", digits_from_1(ratio), ratio);
+}
+
+/* The last time of which the area is known; 0: none but the first. */
+static size_t last_known(const flow_job *j, const flow_row *r) {
+    size_t last = 0;
+    for (size_t i = 1; i < j->times; i++) {
+        nevh_loop_area at = nevh_loop_result(r->loop, i);
+        last = !isnan(at.area) && flow_resolved(at) ? i : last;
+    }
+    return last;
+}
+
 /* The change of the area by the scheme, as far as that is known. */
 static char *area_words(const flow_job *j, const flow_row *r) {
     static const double nothing = 5e-7;
     double first = nevh_loop_result(r->loop, 0).area, worst = 0;
-    nevh_loop_area last = {.area = NAN};
+    nevh_loop_area last = nevh_loop_result(r->loop, last_known(j, r));
     for (size_t i = 1; i < j->times; i++) {
         nevh_loop_area at = nevh_loop_result(r->loop, i);
-        if (isnan(at.area) || !flow_resolved(at))
-            continue;
-        last = at;
-        worst = fmax(worst, fabs(at.area / first - 1));
+        if (!isnan(at.area) && flow_resolved(at))
+            worst = fmax(worst, fabs(at.area / first - 1));
     }
     /* The sum is kept, not the area of the plane that is drawn. */
     const char *area = j->plan.n > 1 ? "sum of areas" : "area";
-    return isnan(last.area) ? text_print("area unresolved")
-           : worst < nothing
-               ? text_print("%s kept until t = %.4g%s", area, last.t,
-                            j->plan.unit)
-               : text_print("%s \303\227 %.*f until t = %.4g%s", area,
-                            digits_from_1(last.area / first), last.area / first,
+    if (!last_known(j, r))
+        return text_print("area unresolved");
+    if (worst < nothing)
+        return text_print("%s kept until t = %.4g%s", area, last.t,
+                          j->plan.unit);
+    char *ratio = ratio_text(last.area / first);
+    char *text = text_print("%s \303\227 %s until t = %.4g%s", area, ratio,
                             last.t, j->plan.unit);
+    free(ratio);
+    return text;
 }
 
-static char *heading_of(const flow_job *j, const flow_row *r, bool outside) {
-    char *area = area_words(j, r), *dt = NULL;
+/* Every so many times has a shape. */
+static size_t every_of(const flow_job *j) {
+    return (j->times + MOST_SHAPES - 1) / MOST_SHAPES;
+}
+
+/* The time of the last shape of a panel. */
+static double last_drawn(const picture *f, const flow_row *r) {
+    size_t every = every_of(f->job), last = 0;
+    for (size_t time = 0; time < f->job->times; time += every)
+        last = shape_of(f, r, time)->drawn ? time : last;
+    return f->job->time[last];
+}
+
+/* That of all panels. */
+static double last_of_all(const picture *f) {
+    const flow_job *j = f->job;
+    double last = j->time[0];
+    for (size_t i = 0; i < j->rows; i++)
+        if (!isnan(nevh_loop_result(j->row[i].loop, 0).area))
+            last = fmax(last, last_drawn(f, &j->row[i]));
+    return last;
+}
+
+static bool has_one_dt(const flow_job *j) {
+    return j->rows < 2 || j->row[0].dt == j->row[j->rows - 1].dt;
+}
+
+static char *heading_of(const picture *f, const flow_row *r, bool outside) {
+    const flow_job *j = f->job;
+    char *area = area_words(j, r), *dt = NULL, *until = NULL;
     bool whole = !isnan(nevh_loop_result(r->loop, j->times - 1).area),
          any = !isnan(nevh_loop_result(r->loop, 1).area);
-    if (j->rows > 1 && j->row[0].dt != j->row[j->rows - 1].dt)
+    if (last_drawn(f, r) < last_of_all(f) &&
+        last_drawn(f, r) != j->time[last_known(j, r)])
+        until = text_print(", drawn until t = %.4g%s", last_drawn(f, r),
+                           j->plan.unit);
+    if (!has_one_dt(j))
         dt = text_print(", dt = %.4g%s", r->dt, j->plan.unit);
-    char *text = text_print("%s%s: %s%s%s", r->integrator, dt ? dt : "",
+    char *text = text_print("%s%s: %s%s%s%s", r->integrator, dt ? dt : "",
                             whole || any ? area : "failed",
                             any && !whole ? ", then failed" : "",
-                            outside ? ", outside" : "");
+                            until ? until : "", outside ? ", outside" : "");
     free(area);
+    free(until);
     free(dt);
     return text;
 }
@@ -273,7 +324,7 @@ static void begin_panel(plot **to, const flow_job *j, const window *w) {
 static size_t draw_panel(plot **to, const picture *f, const flow_row *r,
                          const window *w) {
     const flow_job *j = f->job;
-    size_t every = (j->times + MOST_SHAPES - 1) / MOST_SHAPES, left_out = 0;
+    size_t every = every_of(j), left_out = 0;
     bool outside = false;
     begin_panel(to, j, w);
     for (size_t k = (j->times - 1) / every + 1; k-- > 0;) {
@@ -285,10 +336,27 @@ static size_t draw_panel(plot **to, const picture *f, const flow_row *r,
         } else
             left_out++;
     }
-    char *heading = heading_of(j, r, outside);
+    char *heading = heading_of(f, r, outside);
     plot_heading(*to, heading);
     free(heading);
     return left_out;
+}
+
+/* The time that is named is that of the last shape. */
+static void note(plot *to, const picture *f, size_t left_out) {
+    const flow_job *j = f->job;
+    plan shown = j->plan;
+    shown.t_end = last_of_all(f);
+    char *dt = has_one_dt(j)
+                   ? text_print("dt = %.4g%s", j->row[0].dt, j->plan.unit)
+                   : NULL;
+    char *more = text_print(
+        "%s at the times named; area over the first%s%s", j->shape.text,
+        j->plan.n > 1 ? ", summed over all planes, of which one is drawn" : "",
+        left_out ? "; shapes that are long threads are not drawn" : "");
+    plot_note_run(to, &shown, dt, more);
+    free(more);
+    free(dt);
 }
 
 int flow_plot(const flow_job *j, const options *o) {
@@ -301,15 +369,11 @@ int flow_plot(const flow_job *j, const options *o) {
             continue; /* refused */
         left_out += draw_panel(&to, &f, &j->row[i], &w);
     }
+    if (to)
+        note(to, &f, left_out);
     free(f.shapes);
     if (!to)
         return tool_refuse("nothing to plot: no integrator fits");
-    char *more = text_print(
-        "%s at the times named; area over the first%s%s", j->shape.text,
-        j->plan.n > 1 ? ", summed over all planes, of which one is drawn" : "",
-        left_out ? "; shapes that are long threads are not drawn" : "");
-    plot_note_run(to, &j->plan, NULL, more);
-    free(more);
     int drawn = plot_write(to, o);
     plot_free(to);
     return drawn;

@@ -91,8 +91,47 @@ static line fit(const double x[], const double y[], size_t from, size_t to) {
     return l;
 }
 
+static double pair_slope(const double x[], const double y[], size_t a,
+                         size_t b) {
+    return log(y[b] / y[a]) / log(x[b] / x[a]);
+}
+
+/* The next point that is not close; `count` where there is none. */
+static size_t next_apart(const double x[], size_t count, size_t i) {
+    size_t k = i + 1;
+    while (k < count && steps_are_close(x[i], x[k]))
+        k++;
+    return k < count ? k : count;
+}
+
+/* True if the slopes of neighbouring pairs agree from `from` to `to`. */
+static bool is_straight(const double x[], const double y[], size_t from,
+                        size_t to) {
+    double last = NAN;
+    for (size_t i = from, k; (k = next_apart(x, to, i)) < to; i = k) {
+        double slope = pair_slope(x, y, i, k);
+        if (!isnan(last) && !orders_agree(slope, last))
+            return false;
+        last = slope;
+    }
+    return true;
+}
+
+/* True if an error falls faster below the points that a slope is fitted to: it changes
+   its sign there.  Rounding makes it fall more slowly. */
+static bool bends_down(const double x[], const double y[], size_t from,
+                       double slope) {
+    size_t k = from;
+    while (k-- > 0)
+        if (!steps_are_close(x[k], x[from])) {
+            double below = pair_slope(x, y, k, from);
+            return below > slope && !orders_agree(below, slope);
+        }
+    return false;
+}
+
 /* The slope of log y over log x, by least squares over as many neighbours as are
-   on a rising line to a factor of 1.25.
+   on a rising line to a factor of 1.25, the slopes of pairs of which agree.
    x         rising
    from, to  out: the neighbours; to: past the last
    returns   NAN where no three are on such a line */
@@ -105,8 +144,8 @@ static double order_slope(const double x[], const double y[], size_t count,
     for (size_t i = 0; i < count; i++)
         for (size_t k = count; k > i + 2; k--) {
             line l = fit(x, y, i, k);
-            bool good =
-                l.worst <= near && l.slope >= least && x[k - 1] > span * x[i];
+            bool good = l.worst <= near && l.slope >= least &&
+                        x[k - 1] > span * x[i] && is_straight(x, y, i, k);
             if (!good || k - i <= *to - *from)
                 continue;
             *from = i;
@@ -157,6 +196,10 @@ static curve curve_of(const rows_drawn *d, size_t first, error_of *error) {
                   ? NAN
                   : order_slope(c.x + above, c.error + above, below - above,
                                 &c.from, &c.to);
+    if (steps && bends_down(c.x + above, c.error + above, c.from, c.slope)) {
+        c.slope = NAN;
+        c.to = c.from;
+    }
     c.from += above;
     c.to += above;
     return c;
