@@ -123,8 +123,10 @@ done
 exits 0 cost kepler --t-end 50 --integrators dprkn12,gauss8 --gradient exact
 has '^ dprkn12, drifts .* [0-9.]+ \(0\.1[0-9]*\)$'
 lacks '^ dprkn12.*floor'
-# So does a flow that is exact; but its orbit is exact, too.
+# A flow that is exact, too, has a row where it is named, but no place in the ranking.
 exits 0 cost kepler --t-end 2 --integrators gonzalez,gauss8,wisdom-holman
+has '^wisdom-holman: the parts solve this H exactly'
+lacks '^ wisdom-holman .*[*]|take wisdom-holman'
 has '^ gonzalez +- +- '
 has '^ wisdom-holman +(\* )?[0-9]'
 has '^gonzalez: the energy is conserved exactly at any step'
@@ -241,6 +243,21 @@ END
 exits 0 cost $work/edge.nevh --integrators verlet,euler
 exits 1 cost $work/edge.nevh --integrators verlet,gauss4
 says 'gauss4 .* failed: '
+# So does a flow that is exact where none is named; and a scheme that fails is a row, and no
+# failure of the command, which chose it.
+svg=$work/cost.svg
+exits 0 cost kepler --budget 1 --plot $svg
+test -s $work/err && { fails "says something"; cat $work/err; }
+has '^ implicit-euler( +fails)+$'
+lacks '^ (respa|wisdom-holman|saba2) |take (respa|wisdom-holman|saba|aba)|not solved'
+tr '\n' ' ' <$work/out | tr -s ' ' | grep -Eq ' respa, .*: the parts solve this H exactly' ||
+    { fails "does not say what is exact"; cat $work/out; }
+texts | grep -Eqx 'respa|wisdom-holman|implicit-euler' && fails "draws what has no errors"
+texts | grep -qx verlet || fails "draws no verlet"
+exits 1 cost kepler --integrators implicit-euler,verlet --dt 0.0314159 --t-end 20
+says 'implicit-euler .*failed: '
+exits 2 cost kepler --integrators respa --t-end 2 --plot $svg
+says 'nothing to plot'
 # Two counts that are not those of gradients.
 exits 0 cost coupled-oscillators --integrators respa,verlet,taylor --budget 0.2
 has '^taylor: a series counts as one evaluation'

@@ -67,6 +67,10 @@ double plan_shortest_dt(const plan *); /* the same */
 /* A copy of the start: coordinates, then momenta; to be freed. */
 double *plan_state(const plan *);
 nevh_options plan_options(const plan *, const char *gradient);
+/* True if the effects that are on are all in A, whose flow is exact. */
+bool plan_parts_are_all(const plan *);
+/* True if the scheme solves H by a flow that is exact, with any step. */
+bool plan_is_exact(const plan *, const nevh_integrator *);
 /* Steps of h that the whole run takes. */
 double plan_steps(const plan *, double h);
 /* Says once why steps could not be compiled. */

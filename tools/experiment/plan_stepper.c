@@ -19,6 +19,24 @@ nevh_options plan_options(const plan *p, const char *gradient) {
                           .native_cache = p->no_cache ? "" : NULL};
 }
 
+bool plan_parts_are_all(const plan *p) {
+    size_t fast = 0, slow = 0, found = 0;
+    for (size_t i = 0; i < nevh_system_effect_count(p->system); i++) {
+        const char *name = nevh_system_effect_name(p->system, i);
+        if (nevh_system_parts(p->system, name, &fast, &slow, NULL))
+            return false;
+        if (slow)
+            return false;
+        found += fast;
+    }
+    return found > 0;
+}
+
+bool plan_is_exact(const plan *p, const nevh_integrator *scheme) {
+    return nevh_integrator_needs(scheme) & NEVH_PARTS && !p->friction &&
+           plan_parts_are_all(p);
+}
+
 double plan_steps(const plan *p, double h) {
     double steps = fabs((p->t_end - p->run->t_start) / h);
     return isfinite(steps) ? steps : 0;

@@ -41,7 +41,7 @@ static double slope_before(const row rows[], size_t i) {
     return NAN;
 }
 
-/* Of those of one scheme that have one, the slope next to that of row i. */
+/* The slope next to that of row i, of those of its scheme that have one. */
 static double neighbour(const row rows[], const double slope[], size_t count,
                         size_t i, bool after) {
     for (size_t k = i; after ? ++k < count : k-- > 0;)

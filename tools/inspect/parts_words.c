@@ -70,7 +70,8 @@ static void name_parts(const plan *p, list *fast, list *slow) {
     }
 }
 
-static void size_words(const plan *p, double ratio, bool empty, list *notes) {
+static void size_words(const plan *p, double ratio, list *notes) {
+    bool empty = plan_parts_are_all(p);
     if (ratio == 0 && empty && p->friction)
         list_add(notes, "  B is 0, but there is friction: order 2");
     else if (ratio == 0)
@@ -93,7 +94,7 @@ static void all_words(const plan *p, double ratio, list *notes) {
                "Parts of H = A + B for schemes by parts: A, whose flow is "
                "exact: %s; B, which kicks: %s",
                a, *b ? b : "nothing");
-    size_words(p, ratio, !*b, notes);
+    size_words(p, ratio, notes);
     free(a);
     free(b);
     list_free(&fast);

@@ -268,7 +268,7 @@ static double last_drawn(const picture *f, const flow_row *r) {
     return f->job->time[last];
 }
 
-/* That of all panels. */
+/* The same of all panels. */
 static double last_of_all(const picture *f) {
     const flow_job *j = f->job;
     double last = j->time[0];

@@ -31,7 +31,7 @@ static const char style[] =
     "@container(max-width:42rem){.broad{display:none}"
     ".narrow{display:block}}\n"
     "figcaption{padding:.3rem .6rem}input{width:50%}\n"
-    "pre{overflow-x:auto;font-size:.85rem}\n"
+    "pre{white-space:pre-wrap;overflow-wrap:anywhere;font-size:.85rem}\n"
     "dd{overflow-x:auto;overflow-y:hidden;margin:0 0 0 1.5rem;"
     "padding:.3rem 0}\n"
     "math{font-size:1.15em}\n"

@@ -178,7 +178,8 @@ static void make_studies(costs *c) {
 }
 
 bool costs_count(const costs *c, const study *l) {
-    return !l->count || c->search.plan.by_state || !study_keeps_energy(l);
+    return !l->exact &&
+           (!l->count || c->search.plan.by_state || !study_keeps_energy(l));
 }
 
 const row *cost_cell(const study *l, size_t target) {
@@ -199,7 +200,9 @@ const study *costs_cheapest(const costs *c, size_t target, bool gradients) {
 }
 
 /* Rows side by side, in the order of the studies. */
-static row *list_rows(const costs *c, bool shown, size_t *count) {
+static row *list_rows(const costs *c,
+                      bool (*wanted)(const costs *, const study *),
+                      size_t *count) {
     size_t most = 0;
     for (size_t i = 0; i < c->count; i++)
         most += c->study[i].count;
@@ -207,7 +210,7 @@ static row *list_rows(const costs *c, bool shown, size_t *count) {
     *count = 0;
     for (size_t i = 0; i < c->count; i++) {
         const study *l = &c->study[i];
-        if (!l->count || (shown && !cost_shows(c, l)))
+        if (!l->count || (wanted && !wanted(c, l)))
             continue;
         memcpy(rows + *count, l->level, l->count * sizeof *rows);
         *count += l->count;
@@ -219,7 +222,7 @@ static page make_page(const options *o, costs *c) {
     page result = {0};
     bool is_table = o->format == FORMAT_TABLE;
     size_t count;
-    row *rows = list_rows(c, is_table, &count);
+    row *rows = list_rows(c, is_table ? cost_shows : NULL, &count);
     observe_orders(rows, count);
     result.table =
         is_table ? cost_table(c) : records(&c->search.plan, rows, count);
@@ -237,10 +240,10 @@ static page make_page(const options *o, costs *c) {
     return result;
 }
 
-/* The first run that failed with a step that was asked for, or of a scheme that ran
-   with none; other steps are a search. */
+/* The first run of a scheme that was named that failed with a step that was asked for, or
+   that ran with none; other steps, and other schemes, are a search. */
 static const row *first_failure(const costs *c) {
-    for (size_t i = 0; i < c->count; i++) {
+    for (size_t i = 0; i < c->count && c->all; i++) {
         const row *failed = NULL;
         bool ran = false;
         for (size_t k = c->study[i].count; k-- > 0;) {
@@ -264,7 +267,7 @@ static int draw_costs(const options *o, const costs *c) {
     size_t count;
     if (o->plot.kind != PLOT_KIND_order)
         return cost_plot(o, c);
-    row *rows = list_rows(c, true, &count);
+    row *rows = list_rows(c, cost_draws, &count);
     int status = order_plot(o, &c->search.plan, rows, count, ORDER_DT);
     free(rows);
     return status;

@@ -96,7 +96,7 @@ static void draw_guides(const drawing *d) {
     for (size_t i = 0; i < d->costs->count; i++) {
         const study *l = &d->costs->study[i];
         int order = nevh_integrator_order(l->scheme);
-        if (!cost_shows(d->costs, l) || order > highest || seen[order] ||
+        if (!cost_draws(d->costs, l) || order > highest || seen[order] ||
             nevh_integrator_adaptive(l->scheme))
             continue;
         seen[order] = true;
@@ -108,7 +108,7 @@ static void draw_panel(drawing *d) {
     plot_log(d->to, true, true);
     plot_limit_y(d->to, 0, useless);
     for (size_t i = 0; i < d->costs->count; i++)
-        if (cost_shows(d->costs, &d->costs->study[i]))
+        if (cost_draws(d->costs, &d->costs->study[i]))
             draw_study(d, &d->costs->study[i]);
 }
 
@@ -117,7 +117,7 @@ static void draw_panel(drawing *d) {
 static bool all_have(const costs *c, work_of *count) {
     for (size_t i = 0; i < c->count; i++)
         for (size_t k = 0; k < c->study[i].count; k++)
-            if (cost_shows(c, &c->study[i]) && c->study[i].level[k].ran &&
+            if (cost_draws(c, &c->study[i]) && c->study[i].level[k].ran &&
                 !(count(&c->study[i].level[k]) > 0))
                 return false;
     return true;
@@ -137,8 +137,17 @@ static void add_note(const drawing *d) {
     free(text);
 }
 
+static bool draws_any(const costs *c) {
+    bool any = false;
+    for (size_t i = 0; i < c->count; i++)
+        any |= cost_draws(c, &c->study[i]);
+    return any;
+}
+
 int cost_plot(const options *o, const costs *c) {
     const plan *p = &c->search.plan;
+    if (!draws_any(c))
+        return tool_refuse("there is nothing to plot: no scheme has an error");
     const char *error =
         p->by_state ? "largest state error, relative" : energy_plot_largest(p);
     bool h = all_have(c, values);

@@ -27,6 +27,8 @@ const row *cost_cell(const study *, size_t target);
 const study *costs_cheapest(const costs *, size_t target, bool gradients);
 bool cost_is_yardstick(const study *);
 bool cost_shows(const costs *, const study *);
+/* True if it is shown, and has a place in pictures. */
+bool cost_draws(const costs *, const study *);
 
 /* cost_table.c */
 table *cost_table(const costs *);

@@ -25,9 +25,24 @@ static bool is_cheap(const costs *c, const study *l) {
     return false;
 }
 
+/* True if so few fail that each has a row. */
+static bool few_fail(const costs *c) {
+    enum { FEW = 4 };
+    size_t count = 0;
+    for (size_t i = 0; i < c->count; i++)
+        count += study_failure(&c->study[i]) != NULL;
+    return count <= FEW;
+}
+
+bool cost_draws(const costs *c, const study *l) {
+    return cost_shows(c, l) && !l->exact && !study_failure(l);
+}
+
 bool cost_shows(const costs *c, const study *l) {
     if (c->all)
         return l->count > 0;
+    if (study_failure(l))
+        return few_fail(c);
     return l->end != STUDY_REFUSED && costs_count(c, l) &&
            (cost_is_yardstick(l) || is_cheap(c, l));
 }
@@ -71,7 +86,7 @@ const char *cost_word(const costs *c, const study *l, size_t target) {
         return "refused";
     if (study_failure(l))
         return "fails";
-    if (!costs_count(c, l))
+    if (!costs_count(c, l) && !l->exact)
         return "-";
     if (cost_cell(l, target))
         return NULL;

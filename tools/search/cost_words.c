@@ -92,7 +92,7 @@ static void digit_words(const study *l, list *words) {
 static void digits_words(const costs *c, list *words) {
     list lines = {0};
     for (size_t i = 0; i < c->count; i++)
-        if (cost_shows(c, &c->study[i]) && c->study[i].count)
+        if (cost_draws(c, &c->study[i]) && c->study[i].count)
             digit_words(&c->study[i], &lines);
     if (lines.count)
         list_add(words, " one more digit         time     evaluations    "
@@ -163,7 +163,10 @@ static void yardstick_words(const costs *c, const char *name, list *words) {
 }
 
 static void winner_words(const costs *c, list *words) {
-    for (size_t k = 0; k < COST_TARGETS && !cost_is_beyond(c, k); k++) {
+    bool any = false;
+    for (size_t i = 0; i < c->count; i++)
+        any |= !c->study[i].exact;
+    for (size_t k = 0; k < COST_TARGETS && any && !cost_is_beyond(c, k); k++) {
         size_t last = last_alike(c, k);
         if (costs_cheapest(c, k, false))
             best_words(c, k, last, words);
@@ -192,7 +195,12 @@ static bool drifts_here(const costs *c, const study *l) {
 }
 
 static bool conserves_energy(const costs *c, const study *l) {
-    return l->end != STUDY_REFUSED && !costs_count(c, l);
+    return l->end != STUDY_REFUSED && !l->exact && !costs_count(c, l);
+}
+
+static bool is_exact(const costs *c, const study *l) {
+    (void)c;
+    return l->end != STUDY_REFUSED && l->exact;
 }
 
 static bool has_series(const costs *c, const study *l) {
@@ -226,9 +234,14 @@ static void failure_words(const costs *c, list *words) {
             first = r;
     }
     char *names = list_joined(&others);
-    if (first)
+    if (first && c->all)
         list_print(words, "%s with %s at dt = %.4g %s.", first->integrator,
                    first->gradient, first->dt, first->status);
+    else if (first)
+        list_print(words,
+                   "%s fails with each step that was tried: --integrators %s "
+                   "tells why.",
+                   first->integrator, first->integrator);
     if (others.count > FEW)
         list_print(words, "%zu others fail as well.", others.count);
     else if (others.count)
@@ -364,6 +377,11 @@ void cost_words(costs *c, list *words) {
         conserves_energy);
     if (c->search.plan.friction && !c->search.plan.by_state)
         list_add(words, "Friction " FRICTION_IS ": compare --by state.");
+    name_words(
+        c, words,
+        "the parts solve this H exactly with any step, so that there is no error "
+        "to rank or to draw.",
+        is_exact);
     name_words(c, words, "a series counts as one evaluation.", has_series);
     name_words(c, words, "exact steps of parts are not counted as evaluations.",
                has_parts);

@@ -13,16 +13,19 @@ enum { RUNS_A_ROW = 2 };
 
 study study_new(const plan *p, const char *integrator, const char *gradient) {
     bool transformed;
+    const nevh_integrator *scheme = plan_scheme(p, integrator, &transformed);
     return (study){.integrator = integrator,
                    .gradient = gradient,
-                   .scheme = plan_scheme(p, integrator, &transformed)};
+                   .scheme = scheme,
+                   .exact = plan_is_exact(p, scheme)};
 }
 
 study study_like(const study *l, const char *gradient) {
     return (study){.integrator = l->integrator,
                    .gradient = gradient,
                    .scheme = l->scheme,
-                   .keeps = l->keeps};
+                   .keeps = l->keeps,
+                   .exact = l->exact};
 }
 
 void study_free(study *l) {
@@ -337,7 +340,7 @@ bool study_is_behind(const search *s, const study *l, const study others[],
         const study *m = &others[i];
         double factor = lead(l, m, useless);
         for (size_t k = 0; k < m->count; k++)
-            if (m->gradient == l->gradient &&
+            if (m->gradient == l->gradient && !m->exact &&
                 (s->plan.by_state || !study_keeps_energy(m)) &&
                 study_error(&m->level[k]) <= fmin(error, usable_below) &&
                 factor * m->level[k].work < last->work)

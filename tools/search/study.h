@@ -41,6 +41,7 @@ typedef struct {
     size_t count, capacity;
     int topped; /* gap to which steps beyond the coarsest were tried; 0 */
     bool keeps; /* the energy, also at steps that are far too long */
+    bool exact; /* its steps solve this H: there is no error but rounding */
     study_end end;
 } study;
 typedef struct {
