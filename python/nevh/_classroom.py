@@ -174,6 +174,9 @@ def form(room, names, chosen):
 def make_sheets(room, given, names, chosen):
     """Pages and notebooks in a folder; their names."""
     folder, files, stems = given.output or ".", [], file_names(names)
+    if folder.endswith((".html", ".ipynb")):
+        raise Error("-o %s: a file for each sheet and name is made in a folder: -o %s" % (
+            folder, os.path.splitext(folder)[0] or "sheets"))
     if not os.path.isdir(folder):
         os.mkdir(folder)
     for name in told(names):

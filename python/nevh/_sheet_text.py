@@ -13,6 +13,8 @@ import shlex
 from . import _commands
 from ._command_line import call_of
 
+LINE = 76  # characters of a command that a printed page holds
+
 
 def folder():
     """The folder of sheets.texi: installed beside the package, or in the sources."""
@@ -169,6 +171,19 @@ def as_html(text):
     return "".join("<p>%s</p>\n" % one for one in re.split(r"\n\s*\n", made) if one.strip())
 
 
+def broken(commands):
+    """Long commands in lines that end before an option, so that no page breaks one inside."""
+    made = []
+    for line in commands.strip("\n").split("\n"):
+        words, line = re.split(r" (?=--[a-z])", line), ""
+        for word in words:
+            if line and len(line.split("\n")[-1]) + 1 + len(word) > LINE:
+                line += " \\\n   "
+            line += " " * bool(line) + word
+        made.append(line)
+    return "\n".join(made)
+
+
 def sheet_html(number, title, body, source, name="", boxes=lambda item: ""):
     """A sheet as a part of a page; `boxes` makes what follows an item."""
     lines = ['<section class="sheet"><h1>%s<small>Sheet %d%s</small></h1>\n' % (
@@ -181,7 +196,7 @@ def sheet_html(number, title, body, source, name="", boxes=lambda item: ""):
             lines.append("<li>\n")
             item = part
         elif kind == "example":
-            lines.append('<pre class="example">%s</pre>\n' % html.escape(part.strip("\n")))
+            lines.append('<pre class="example">%s</pre>\n' % html.escape(broken(part)))
         elif kind == "file":
             lines.append('<pre class="example">%s</pre>\n' % html.escape(text_of(part,
                                                                                 source)))

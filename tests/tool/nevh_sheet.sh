@@ -18,6 +18,11 @@ exits 2 sheet one
 exits 2 sheet 1 --as paper
 says 'page, notebook, check, moodle or form'
 
+exits 2 sheet 1 --as check -o $work/check.html
+says 'made in a folder: -o .*/check$'
+exits 2 sheet 1 --as notebook -o $work/sheet.ipynb
+test -e $work/check.html -o -e $work/sheet.ipynb && fails "makes a folder of a file's name"
+
 # Without a name the usual numbers.
 exits 0 sheet 1 -o $work/usual
 for text in 'from phi = 2, p = 0, dt = 0.05' 'nevh run pendulum --integrators euler --dt 0.05'; do
@@ -49,6 +54,14 @@ cmp -s $work/other/sheet-3-ada-lovelace.ipynb $work/ten/sheet-3-ada-lovelace.ipy
 printf 'Ada\nada\n' >$work/twice
 exits 2 sheet 1 --for $work/twice --key 7 -o $work/no
 says 'the name ada twice'
+
+# Printed commands are broken before an option, never inside one.
+exits 0 sheet all --for $work/names --key 7 -o $work/class.html
+sed -n '/<pre class="example">/,/<\/pre>/p' $work/class.html | sed 's/<[^>]*>//g
+    s/&[a-z0-9#]*;/"/g' >$work/commands
+awk 'length > 80 && /^nevh|^    --/ { print; long = 1 } /^ *t-end|--$/ { print; long = 1 }
+    END { exit long }' $work/commands || fails "has long commands"
+test "$(grep -c '^nevh ' $work/commands)" -ge 100 || fails "has few commands"
 
 # The usual answers are those of the sheets' answers.
 exits 2 sheet 1 --answers -o $work/answers.html
