@@ -83,6 +83,11 @@ for name in $(echo $often | tr , ' '); do
 done >$work/colours
 test "$(sort -u $work/colours | grep -c '#')" = 8 || fails "has other colours: $(cat $work/colours)"
 rk4=$(sed -n 2p $work/colours)
+# So do those that implicit-euler stands beside.
+beside=implicit-euler,verlet,rk4,gauss4,midpoint,euler
+exits 0 compare oscillator --t-end 10 --dt 0.1 --integrators $beside --plot $svg
+test "$(for name in $(echo $beside | tr , ' '); do colour $name; done | sort -u | wc -l)" = 6 ||
+    fails "draws implicit-euler in $(colour implicit-euler)"
 for kind in 'compare oscillator --t-end 10 --dt 0.1,0.05' \
     'run oscillator --t-end 10 --plot-kind time' 'run oscillator --t-end 10 --plot-kind energy' \
     'cost oscillator --t-end 10 --budget 1'; do

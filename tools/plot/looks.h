@@ -44,7 +44,7 @@
     X("blanes-moan4")                                                          \
     X("gauss6")                                                                \
     X("gauss8")                                                                \
-    X("implicit-euler")                                                        \
+    X("itoh-abe")                                                              \
     X("forest-ruth")                                                           \
     X("heun")                                                                  \
     X("dop853")                                                                \
@@ -81,7 +81,7 @@
     X("lobatto6")                                                              \
     X("tao2")                                                                  \
     X("tao6")                                                                  \
-    X("itoh-abe")                                                              \
+    X("implicit-euler")                                                        \
     X("itoh-abe-symmetric")                                                    \
     X("gonzalez")                                                              \
     X("avf")                                                                   \
