@@ -64,6 +64,19 @@ test -s $work/curve1e-3 || fails "draws no curve"
 cmp -s $work/curve1e-3 $work/curve1e-9 &&
     fails "draws the energy error of fixed steps for dopri5 under a tolerance"
 
+# Bins are a period or longer where the run has ten: those of verlet, which keeps the
+# energy bounded, are level, and their words have their length.
+for kind in 'compare pendulum --dt 0.1,0.05' 'run pendulum --plot-kind energy'; do
+    exits 0 $kind --integrators verlet --t-end 100 --plot $svg --keep-plot-script $work/out.gp
+    awk '/^[$]series/ { here = 1; n = 0; next } /^EOD/ { here = 0; if (n < 10 || high > 1.1*low) bad = 1 }
+        here { n++; low = n == 1 || $2 < low ? $2 : low; high = n == 1 || $2 > high ? $2 : high }
+        END { exit bad }' $work/out.gp || fails "draws a band"
+    length=$(texts | sed -n 's/.*the largest in each \([0-9.]*\) s$/\1/p')
+    between "$length" 2.6 4 "bins"
+done
+exits 0 run pendulum --integrators verlet --plot-kind energy --t-end 20 --dt 0.01 --plot $svg
+texts | grep -q 'the largest in each 0.067 s$' || fails "has other bins of seven periods"
+
 # All integrators have a look, each one of its own.
 sed -n 's/^    X("\([a-z0-9-]*\)") *\\*$/\1/p' "$srcdir/tools/plot/looks.h" | sort >$work/looks
 exits 0 list integrators --format csv

@@ -201,3 +201,28 @@ double orbit_turns(const orbit *o, size_t k) {
             (orbit_row(o, i)[k] > mean) != (orbit_row(o, i - 1)[k] > mean);
     return (double)crossings / 2;
 }
+
+/* An orbit_fill; data are the number of coordinates. */
+static void fill_state(void *data, double t, const double q[], const double p[],
+                       double values[]) {
+    size_t n = *(const size_t *)data;
+    (void)t;
+    memcpy(values, q, n * sizeof *q);
+    memcpy(values + n, p, n * sizeof *p);
+}
+
+double orbit_turns_of(const plan *p) {
+    if (!p->dts || !p->integrators.count)
+        return 0;
+    size_t n = p->n;
+    orbit o = {.plan = *p, .integrator = p->integrators.item[0]};
+    row_times steps = {.by = BY_STEPS, .every = 1};
+    double most = 0;
+    o.plan.dts = 1;
+    if (fits(p, o.integrator) &&
+        !orbit_follow(&o, &steps, 2 * n, fill_state, &n, true))
+        for (size_t k = 0; k < 2 * n && o.rows.part == 1; k++)
+            most = fmax(most, orbit_turns(&o, k));
+    orbit_free(&o);
+    return most;
+}

@@ -46,5 +46,8 @@ row_times orbit_dense_times(const plan *);        /* time: to be freed */
 const double *orbit_row(const orbit *, size_t i); /* after t */
 /* The number of turns of a column: its passages through the mean, over 2. */
 double orbit_turns(const orbit *, size_t k);
+/* The turns of the fastest coordinate or momentum in the plan's run, by its first
+   integrator and dt; 0 where the run fails, or has too many steps for all to be kept. */
+double orbit_turns_of(const plan *);
 
 #endif

@@ -32,14 +32,16 @@ static void draw_energy(plot *to, const run_picture *picture, const orbit *o) {
     if (plan_run(p, s, p->dt[0], observers, 2, &stopped) && !picture->quiet)
         tool_refuse("%s: %s failed: %s", p->name, o->integrator,
                     nevh_stepper_message(s));
-    energy_plot_add(to, picture->orbits.count > 1 ? o->name : NULL,
-                    o->integrator, trace.envelope);
+    energy_plot_add(to, &picture->plan,
+                    picture->orbits.count > 1 ? o->name : NULL, o->integrator,
+                    trace.envelope);
     nevh_energy_free(energy);
     nevh_stepper_free(s);
     free(trace.envelope);
 }
 
 plot *plot_energy(run_picture *picture) {
+    picture->plan.turns = orbit_turns_of(&picture->plan);
     plot *to = energy_plot_new(&picture->plan, picture->plan.title, NULL);
     for (size_t i = 0; i < picture->orbits.count; i++)
         draw_energy(to, picture, &picture->orbits.item[i]);

@@ -8,6 +8,14 @@ static const double absurd = 100;     /* of an error relative to the energy */
 static const double least_range = 30; /* a level error is a level line */
 enum { MOST_POINTS = 300 };           /* of a line */
 
+/* The number of points of a line: a period of the motion or more each, where the run has
+   some periods, so that oscillations do not fill the panel. */
+static size_t points_of(const plan *p) {
+    static const double some = 10, half = 0.5; /* what a count may be above */
+    return p->turns >= some ? (size_t)fmin(p->turns - half, MOST_POINTS)
+                            : MOST_POINTS;
+}
+
 /* True if a point stands for several steps. */
 static bool has_bins(const plan *p) {
     double shortest = INFINITY;
@@ -30,7 +38,7 @@ const char *energy_plot_largest(const plan *p) {
 
 char *energy_plot_words(const plan *p) {
     const char *time = nevh_scene_label(p->scene, "t");
-    double bin = (p->t_end - p->run->t_start) / MOST_POINTS;
+    double bin = (p->t_end - p->run->t_start) / (double)points_of(p);
     char *scale = text_print("errors relative to %.4g%s", plan_energy_scale(p),
                              p->energy_unit);
     char *text = has_bins(p) ? text_print("%s, the largest in each %.2g%s%s",
@@ -80,22 +88,36 @@ static void add_exit(plot *to, const char *integrator, const envelope *e) {
     free(name);
 }
 
-/* The largest of a few parts each where there are many, so that oscillations
-   do not fill the panel. */
-void energy_plot_add(plot *to, const char *name, const char *integrator,
-                     const envelope *e) {
-    size_t parts = 0, largest = 0, seen = 0, series = plot_series(to, name);
+/* True if a bin begins after so many parts: a rest that is shorter belongs to the last. */
+static bool is_first(size_t seen, size_t each, size_t parts) {
+    return seen % each == 0 && (seen == 0 || parts - seen >= each);
+}
+
+/* The largest of a few parts each where there are many. */
+void energy_plot_add(plot *to, const plan *p, const char *name,
+                     const char *integrator, const envelope *e) {
+    size_t parts = 0, last = 0, largest = 0, seen = 0,
+           series = plot_series(to, name);
     plot_integrator(to, series, integrator);
     plot_style(to, series, name ? PLOT_MARKED : PLOT_LINES);
     for (size_t i = 0; i < ENVELOPE_PARTS; i++)
-        parts += e->part[i].value >= 0;
-    size_t each = (parts + MOST_POINTS - 1) / MOST_POINTS;
+        if (e->part[i].value >= 0) {
+            parts++;
+            last = i;
+        }
+    /* A run that ends early has bins as long as those of the others. */
+    size_t whole = points_of(p) < MOST_POINTS && has_bins(p)
+                       ? parts * ENVELOPE_PARTS / (last + 1)
+                       : parts;
+    size_t points = has_bins(p) ? points_of(p) : MOST_POINTS;
+    size_t each = (whole + points - 1) / points;
     for (size_t i = 0; i < ENVELOPE_PARTS; i++) {
         if (e->part[i].value < 0)
             continue;
-        if (seen++ % each == 0 || e->part[i].value > e->part[largest].value)
+        if (is_first(seen, each, parts) ||
+            e->part[i].value > e->part[largest].value)
             largest = i;
-        if (seen % each == 0 || seen == parts)
+        if (++seen == parts || is_first(seen, each, parts))
             plot_point(to, series, e->part[largest].t, e->part[largest].value);
     }
     add_exit(to, integrator, e);

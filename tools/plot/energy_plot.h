@@ -14,7 +14,7 @@ char *energy_plot_words(const plan *);
 /* The name of an axis of largest errors. */
 const char *energy_plot_largest(const plan *);
 /* A line in the current panel; name: NULL is none. */
-void energy_plot_add(plot *, const char *name, const char *integrator,
-                     const envelope *);
+void energy_plot_add(plot *, const plan *, const char *name,
+                     const char *integrator, const envelope *);
 
 #endif
