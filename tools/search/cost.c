@@ -240,10 +240,17 @@ static page make_page(const options *o, costs *c) {
     return result;
 }
 
+bool costs_fail(const costs *c) {
+    bool ran = false;
+    for (size_t i = 0; i < c->count; i++)
+        ran |= c->study[i].count && !study_failure(&c->study[i]);
+    return c->all || !ran;
+}
+
 /* The first run of a scheme that was named that failed with a step that was asked for, or
    that ran with none; other steps, and other schemes, are a search. */
 static const row *first_failure(const costs *c) {
-    for (size_t i = 0; i < c->count && c->all; i++) {
+    for (size_t i = 0; i < c->count && costs_fail(c); i++) {
         const row *failed = NULL;
         bool ran = false;
         for (size_t k = c->study[i].count; k-- > 0;) {

@@ -20,6 +20,8 @@ typedef struct {
 } costs;
 /* True if its errors are comparable with those of other studies. */
 bool costs_count(const costs *, const study *);
+/* True if a failure is one of the command: schemes were named, or none ran. */
+bool costs_fail(const costs *);
 /* The cheapest level of a study for a target; NULL: none keeps it. */
 const row *cost_cell(const study *, size_t target);
 /* The study that takes least time; NULL: none keeps the target.

@@ -42,7 +42,7 @@ bool cost_shows(const costs *c, const study *l) {
     if (c->all)
         return l->count > 0;
     if (study_failure(l))
-        return few_fail(c);
+        return cost_is_yardstick(l) || few_fail(c);
     return l->end != STUDY_REFUSED && costs_count(c, l) &&
            (cost_is_yardstick(l) || is_cheap(c, l));
 }

@@ -234,7 +234,7 @@ static void failure_words(const costs *c, list *words) {
             first = r;
     }
     char *names = list_joined(&others);
-    if (first && c->all)
+    if (first && costs_fail(c))
         list_print(words, "%s with %s at dt = %.4g %s.", first->integrator,
                    first->gradient, first->dt, first->status);
     else if (first)
