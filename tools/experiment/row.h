@@ -113,8 +113,8 @@ int row_fails(const plan *, const row *);
 bool orders_agree(double a, double b);
 /* Steps so close that their errors tell of their phases, not of the order. */
 bool steps_are_close(double a, double b);
-/* observed_order, where that of a pair of steps next to it agrees or there is no other, of rows with the same scheme beside each other;
-   notes of settings, gradients, scale and what holds for some rows. */
+/* observed_order of rows with the same scheme beside each other, where that of a pair of
+   steps next to it agrees or there is no other. */
 void observe_orders(row rows[], size_t count);
 void row_notes(const options *, const plan *, const row rows[], size_t count,
                list *notes);
