@@ -143,7 +143,8 @@ libnevh_core_la_SOURCES = \
 	lib/taylor/dd_orbit.c \
 	lib/taylor/long_orbit.c \
 	lib/taylor/certain_private.h \
-	lib/taylor/certain.c lib/taylor/certain_absent.c \
+	lib/taylor/certain_inside_private.h \
+	lib/taylor/certain.c lib/taylor/certain_end.c lib/taylor/certain_absent.c \
 	lib/work/pace.h \
 	lib/work/work_private.h \
 	lib/work/work.c \

@@ -122,9 +122,12 @@ NEVH_API double nevh_reference_growth(const nevh_reference *);
    there is no reference for that reason.  NAN: not between t0 and t1, as far as
    was seen. */
 NEVH_API double nevh_reference_ends(const nevh_reference *);
-/* The same without a reference, by Taylor series until near that time.
+/* The same without a reference, by Taylor series of two tolerances, whose ends have six
+   digits in common.
    cost     some milliseconds for planets; at most a second or so, after which
-            the answer is NAN */
+            the answer is NAN
+   returns  INFINITY where series end at times that have not: the orbit is not known
+            that far, as where it is chaotic */
 NEVH_API double nevh_solution_ends(const nevh_system *, double t0, double t1,
                                    const double q[], const double p[]);
 /* Tests by Taylor series whether H is smooth on the way of a solution: they end where

@@ -9,16 +9,19 @@
 
 typedef NEVH__FINE(nevh__series_orbit) orbit;
 
-/* Series up to the end, or `most` of them, or until they have cost a second or so.
-   *ends is the time where the solution itself ends. */
-static int ends_follow(orbit *o, double t1, double most, double *ends,
-                       nevh__report *report) {
-    static const double most_work = 5e8; /* nanoseconds or so */
+static const double most_work = 5e8; /* nanoseconds or so: half a second */
+
+/* Series up to the end, or `most` of them, or until their cost is beyond `work`, of which
+   it is taken.  *ends is the time where the solution itself ends. */
+static int ends_follow(orbit *o, double t1, double most, double *work,
+                       double *ends, nevh__report *report) {
+    double each = NEVH__FINE(nevh__series_orbit_work)(o);
     int status = NEVH_OK;
-    most = fmin(most, most_work / NEVH__FINE(nevh__series_orbit_work)(o));
+    most = fmin(most, *work / each);
     while (!status && (double)o->count < most &&
            fabs((double)(t1 - o->t)) > (double)o->reach)
         status = NEVH__FINE(nevh__series_orbit_next)(o, t1, report);
+    *work -= each * (double)o->count;
     *ends = status && o->ended ? (double)o->t : NAN;
     return status;
 }
@@ -44,7 +47,7 @@ typedef struct {
 
 static int ends_walk(const nevh_system *s, double t0, double t1,
                      const double q[], const double p[], const means *by,
-                     double *ends, nevh__report *report) {
+                     double *work, double *ends, nevh__report *report) {
     size_t n = nevh_system_dof(s);
     double *rates = s ? nevh__array(n, sizeof *rates) : NULL;
     bool timed = s && !(nevh_system_traits(s) & NEVH_AUTONOMOUS);
@@ -67,7 +70,7 @@ static int ends_walk(const nevh_system *s, double t0, double t1,
         o.backward = t1 < t0;
         status = ends_start(&o, t0, q, p, report);
         if (!status)
-            status = ends_follow(&o, t1, by->most, ends, report);
+            status = ends_follow(&o, t1, by->most, work, ends, report);
     }
     fesetenv(&own);
     NEVH__FINE(nevh__series_orbit_clear)(&o);
@@ -77,13 +80,39 @@ static int ends_walk(const nevh_system *s, double t0, double t1,
     return status;
 }
 
-double nevh_solution_ends(const nevh_system *s, double t0, double t1,
-                          const double q[], const double p[]) {
-    static const means fine = {1e-16, 1e-25, 1, INFINITY};
+/* The end in series of another tolerance, past the end that others had. */
+static double ends_again(const nevh_system *s, double t0, double t1,
+                         const double q[], const double p[], double tolerance,
+                         double *work) {
+    means fine = {tolerance, 1e-25, 1, INFINITY};
     nevh__report ignored = {0};
     double ends = NAN;
-    ends_walk(s, t0, t1, q, p, &fine, &ends, &ignored);
+    ends_walk(s, t0, t1, q, p, &fine, work, &ends, &ignored);
     return ends;
+}
+
+/* Series of two tolerances must have the digits in common that are shown; where
+   they do not, those of smaller ones, as far as numbers have digits. */
+double nevh_solution_ends(const nevh_system *s, double t0, double t1,
+                          const double q[], const double p[]) {
+    static const double first = 1e-16, smaller = 1e-7, other = 1. / 64;
+    static const double alike = 5e-7, later = 1e-3;
+    double finest = ldexp(1, -NEVH__FINE_BITS), work = most_work;
+    double ends = ends_again(s, t0, t1, q, p, first, &work);
+    if (isnan(ends))
+        return NAN;
+    work = most_work;
+    for (double by = first; by * other > finest && work > 0; by *= smaller) {
+        if (by < first)
+            ends = ends_again(s, t0, t1, q, p, by, &work);
+        if (isnan(ends))
+            break;
+        double until = ends + later * (ends - t0);
+        double again = ends_again(s, t0, until, q, p, by * other, &work);
+        if (fabs(again - ends) <= alike * fabs(ends - t0))
+            return again;
+    }
+    return INFINITY;
 }
 
 int nevh_solution_smooth(const nevh_system *s, double t0, double t1,
@@ -92,11 +121,11 @@ int nevh_solution_smooth(const nevh_system *s, double t0, double t1,
     static const double most = 5e3, most_pairs = 1e6; /* of variables, in all */
     double n = (double)nevh_system_dof(s), ends = NAN;
     means coarse = {1e-10, 1e-15, 1. / 128, fmin(most, most_pairs / (n * n))};
+    double work = most_work;
     nevh__report report = {0};
-    int status = ends_walk(s, t0, t1, q, p, &coarse, &ends, &report);
-    bool over =
-        isfinite(ends) ||
-        (status == NEVH_EDOM && isfinite(nevh_solution_ends(s, t0, t1, q, p)));
+    int status = ends_walk(s, t0, t1, q, p, &coarse, &work, &ends, &report);
+    bool over = isfinite(ends) || (status == NEVH_EDOM &&
+                                   !isnan(nevh_solution_ends(s, t0, t1, q, p)));
     if (why && room > 0)
         snprintf(why, room, "%s", over ? "" : report.text);
     return over ? NEVH_OK : status;

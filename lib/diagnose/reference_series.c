@@ -300,12 +300,16 @@ static int reference_series_run(nevh_reference *r, chain *c) {
 
 /* Finds whether the solution ends at the time at which series got too short. */
 static void find_end(nevh_reference *r, double t) {
-    r->ends =
+    double ends =
         nevh_solution_ends(r->system, r->t0, r->t1, r->start, r->start + r->n);
-    if (isnan(r->ends))
+    r->ends = isfinite(ends) ? ends : NAN;
+    if (isnan(ends))
         nevh__fail(&r->report, NEVH_EFAILED,
                    "series get too short near t = %.9g, in a close encounter",
                    t);
+    else if (isinf(ends))
+        nevh__fail(&r->report, NEVH_EFAILED,
+                   "the orbit is not known far enough to tell whether it ends");
 }
 
 static bool reference_series_allocate(const nevh_reference *r, chain *c) {

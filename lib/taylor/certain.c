@@ -1,6 +1,6 @@
 /* nevh: states to digits that are certain.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "taylor/certain_private.h"
+#include "taylor/certain_inside_private.h"
 #include <fenv.h>
 #include <float.h>
 #include <math.h>
@@ -13,32 +13,7 @@ enum { MOST_DIGITS = 30, ROOM = 60 };
 #ifdef NEVH_QUADMATH
 #include <quadmath.h>
 
-/* Series of pairs of doubles, or of quad precision, which take some ten times as
-   long. */
-typedef struct {
-    bool pairs;
-    nevh__series_orbit_dd dd;
-    nevh__series_orbit_quad quad;
-} orbit;
-
-struct nevh_certain {
-    nevh__report report;
-    size_t n;
-    int digits;
-    nevh__recurrence *recurrence, *other; /* other: of the coarse run */
-    orbit fine, coarse;                   /* both of pairs, or neither */
-    const volatile sig_atomic_t *ending;  /* or NULL */
-    double at;                            /* now, since t0, as the next two */
-    double parted;         /* when both were far apart; INFINITY: never */
-    double renewed;        /* when the coarse run began anew */
-    bool underflows, lost; /* something was below the doubles, and matters */
-    const nevh_system *system;
-    nevh_timing *timing; /* from t0 until `seen`; NULL: H reads no time */
-    double seen;
-    nevh__wide t0, *start;
-    nevh__wide t0_away, *computed; /* of the coarse run */
-    nevh__wide *away;              /* the same, some roundings from there */
-};
+typedef nevh__certain_orbit orbit;
 
 /* So many digits pairs may do for. */
 enum { DIGITS_OF_PAIRS = 24 };
@@ -76,7 +51,7 @@ static int certain_start(nevh_certain *c, orbit *o, bool pairs,
                : nevh__series_orbit_start_quad(&o->quad, t0, start, &c->report);
 }
 
-static int go(nevh_certain *c, orbit *o, nevh__wide t) {
+int nevh__certain_run(nevh_certain *c, orbit *o, nevh__wide t) {
     return o->pairs ? nevh__series_orbit_go_dd(&o->dd, t, &c->report)
                     : nevh__series_orbit_go_quad(&o->quad, t, &c->report);
 }
@@ -288,7 +263,7 @@ static int part_from_fine(nevh_certain *c, nevh__wide t) {
     nevh__wide from = c->at == 0 ? c->t0_away : c->t0 + c->at;
     nevh__wide to = from + (t - from) * part;
     nevh__wide by = c->at == 0 ? ldexp(1, o->pairs ? -104 : -111) : 0;
-    int status = go(c, o, to);
+    int status = nevh__certain_run(c, o, to);
     nevh__wide *state = o->pairs ? o->dd.state : o->quad.state;
     for (size_t k = 0; !status && k < 2 * c->n; k++)
         state[k] *= k % 2 ? 1 + by : 1 - by;
@@ -311,9 +286,9 @@ static int go_both(nevh_certain *c, nevh__wide t) {
         if (c->at == 0 || fabs((double)(next - c->t0)) > later * c->renewed)
             status = part_from_fine(c, next);
         if (!status)
-            status = go(c, &c->coarse, next);
+            status = nevh__certain_run(c, &c->coarse, next);
         if (!status)
-            status = go(c, &c->fine, next);
+            status = nevh__certain_run(c, &c->fine, next);
         c->at = (double)(next - c->t0);
         if (!status && have_parted(c))
             c->parted = fmin(c->parted, fabs(c->at));
@@ -396,14 +371,14 @@ int nevh_certain_go_to(nevh_certain *c, double time, long double rest) {
                           "the time %g is not a finite number", (double)t);
     int status = look_ahead(c, (double)t);
     if (!status)
-        status = go_both(c, t);
+        status = nevh__certain_end(c, go_both(c, t));
     bool ended = c->ending && *c->ending;
     bool again = c->fine.pairs && !ended &&
                  (status == NEVH_EFAILED || (!status && lacks_digits(c)));
     if (again) {
         c->report = (nevh__report){0};
         status = start_both(c, false);
-        status = status ? status : go_both(c, t);
+        status = status ? status : nevh__certain_end(c, go_both(c, t));
     }
     return status;
 }

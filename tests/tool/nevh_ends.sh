@@ -39,10 +39,45 @@ tells 'the first, member 0: the solution itself ends at t = 5.15195' \
 tells 'the first, member 0: the solution itself ends at t = 2,' \
     sweep $work/flow.nevh --vary 'p_x = range(1, 2, 2)'
 
-# No verdict on a run past that end.
+# Henon-Heiles: after chaotic motion the end is named where two runs still agree on it;
+# 131.356916 has 60 digits behind it, and 377 is beyond all of 113 bits.
+# escape NAME STATE
+escape() {
+    scene $1 "$2" 'H = (p_x^2 + p_y^2 + x^2 + y^2)/2 + x^2*y - y^3/3' \
+        '[run]\nt_end = 400\ndt = 0.1\nintegrators = verlet'
+}
+escape known 'x = -0.4\ny = -0.19\np_x = 0.34\np_y = -0.36'
+escape unknown 'x = 0.2\ny = -0.3\np_x = 0.45\np_y = 0.2'
+tells 'solution itself ends at t = 131\.356916:' reference $work/known.nevh
+tells 'solution itself ends at t = 131\.357' recommend $work/known.nevh \
+    --energy-error 1e-3
+for one in reference check chaos frequencies 'recommend --energy-error 1e-3'; do
+    tells '' $one $work/unknown.nevh
+    grep -q 'itself ends' $work/all && fails 'ends an orbit that is not known'
+done
+tells 'not known that far: no digit is left of it at t = 2[45]' \
+    reference $work/unknown.nevh
+
+# No verdict on a run past that end, and no step that would keep its energy to a time
+# after it.
 exits 0 compare $work/fall.nevh --t-end 6 --format csv
 has '^[^#].*,rk4,.*,undecided,'
 lacks '^[^#].*,unstable,'
+escape late 'x = 0\ny = 0.5\np_x = 0.46'
+for dt in 0.1 0.3; do
+    exits 0 compare $work/late.nevh --t-end 200 --dt $dt --format csv
+    has '^[^#].*,verlet,.*,undecided,'
+    exits 0 compare $work/late.nevh --t-end 200 --dt $dt
+    has 'itself ends at t = 50\.7427'
+    lacks 'To keep|take dt'
+done
+exits 0 compare $work/late.nevh --t-end 40 --dt 0.3
+has 'To keep the energy error of verlet'
+exits 0 compare $work/unknown.nevh --dt 0.2
+lacks 'To keep|take dt|itself ends'
+tells 'Chaotic or regular: .* the orbit is followed no further' check $work/late.nevh
+lacks '^Chaotic or.*--t-end'
+tells 'Chaotic or regular: .*--t-end' check $work/late.nevh --t-end 5
 
 # Edges of the domain: an operation, and the place on the orbit.
 scene root 'x = 1' 'H = p_x^2/2 + sqrt(x)' "$run"

@@ -164,13 +164,28 @@ static void list_reasons(const row_list *r, list *words) {
     }
 }
 
-/* True if a row failed or became unstable, as all do after the end of the solution. */
+/* True if a row failed, became unstable or lost its energy, as all do after the end of
+   the solution. */
 static bool any_trouble(const row_list *r) {
     for (size_t i = 0; i < r->count; i++)
-        if (r->row[i].failed ||
+        if (r->row[i].failed || needs_shorter_step(&r->row[i]) ||
             (r->row[i].ran && r->row[i].energy.verdict == NEVH_UNSTABLE))
             return true;
     return false;
+}
+
+/* A step that keeps the energy to the end of a run whose solution may end before is
+   no advice. */
+static void advise(const plan *p, const row_list *r, list *words) {
+    if (isnan(p->ends)) {
+        suggested_step_words(p, r->row, r->count, words);
+        return;
+    }
+    list_print(words,
+               "The orbit is not known so far as to say whether the solution "
+               "ends before t = %.4g%s, as where it is chaotic: no step that "
+               "keeps its energy until then is looked for.",
+               p->t_end, p->unit);
 }
 
 /* Verdicts on runs past the end of their solution are none. */
@@ -187,7 +202,7 @@ static void judge(const plan *p, const row_list *r, bool is_table,
     if (is_table && !ends)
         stability_words(p, r->row, r->count, words);
     if (is_table && !ends)
-        suggested_step_words(p, r->row, r->count, words);
+        advise(p, r, words);
     time_words(p, r->row, r->count, words);
     passed_words(p, r->row, r->count, words);
     free(ends);
@@ -219,7 +234,8 @@ static int draw_rows(const options *o, const plan *p, const row_list *r) {
 
 /* Runs past the end of the solution have no verdict. */
 static void look_for_end(plan *p, row_list *r) {
-    if (isnan(p->ends) && !p->reference && any_trouble(r))
+    bool open = !p->reference || isfinite(nevh_reference_horizon(p->reference));
+    if (isnan(p->ends) && open && any_trouble(r))
         p->ends = plan_ends(p);
     for (size_t i = 0; isfinite(p->ends) && i < r->count; i++)
         r->row[i].energy.verdict = NEVH_UNDECIDED;

@@ -113,10 +113,11 @@ void plan_look_at_time(plan *);
 /* The largest angular frequency of a drive; 0: there is none.
    effect  out: whose */
 double plan_drive(const plan *, const char **effect);
-/* When the solution itself ends; NAN: not before the plan does.
+/* When the solution itself ends; NAN: not before the plan does; INFINITY: this is not
+   known, as nevh_solution_ends has it.
    cost  a second at most */
 double plan_ends(const plan *);
-/* In words, to be freed; NULL: it does not. */
+/* In words, to be freed; NULL: it does not, or is not known to. */
 char *ends_text(const plan *, double ends);
 /* Refuses a plan whose solution ends before it does: TOOL_FAILED. */
 int plan_refuse_end(const plan *);

@@ -136,6 +136,17 @@ char *ends_text(const plan *p, double t) {
                       t, p->unit);
 }
 
+/* A message, or that the solution ends, where that is known. */
+static char *why_until(const plan *p, double ends, const char *message) {
+    if (isfinite(ends))
+        return ends_text(p, ends);
+    return isinf(ends)
+               ? text_print("%s; the orbit is not known that far, as where it "
+                            "is chaotic",
+                            message)
+               : text_print("%s", message);
+}
+
 int plan_refuse_end(const plan *p) {
     char *ends = ends_text(p, plan_ends(p));
     if (ends)
@@ -146,8 +157,7 @@ int plan_refuse_end(const plan *p) {
 }
 
 char *plan_why(const plan *p, const char *message) {
-    char *ends = ends_text(p, plan_ends(p));
-    return ends ? ends : text_print("%s", message);
+    return why_until(p, plan_ends(p), message);
 }
 
 char *member_why(const plan *p, uint64_t member, const char *message) {
@@ -156,8 +166,7 @@ char *member_why(const plan *p, uint64_t member, const char *message) {
         ends = nevh_solution_ends(p->system, p->run->t_start, p->t_end, q,
                                   q + p->n);
     free(q);
-    char *text = ends_text(p, ends);
-    return text ? text : text_print("%s", message);
+    return why_until(p, ends, message);
 }
 
 nevh_energy *plan_watch(const plan *p) {
@@ -174,7 +183,13 @@ char *plan_doubts(const plan *p, const nevh_energy *watch, int status) {
     double error = nevh_energy_result(watch, 0).max;
     if (!status && !isfinite(passed) && (p->balance || error <= large))
         return NULL;
-    char *text = ends_text(p, plan_ends(p));
+    double ends = plan_ends(p);
+    char *text = ends_text(p, ends);
+    if (isinf(ends) && !isfinite(passed))
+        text = text_print("its energy changes by %.2g times its size, and the "
+                          "orbit is not known so far as to say whether it "
+                          "ends, as where it is chaotic",
+                          error);
     if (!text && isfinite(passed))
         text = text_print("a step before t = %.6g passes a pole of %s: what "
                           "follows is not the orbit of H",

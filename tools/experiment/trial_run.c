@@ -338,8 +338,10 @@ static void outlook_notes(const plan *p, const trial_run *f, list *notes) {
         if (f->length > 0)
             list_print(notes,
                        "Chaotic or regular: %.3g%s are too short to decide; "
-                       "--t-end makes the run longer.",
-                       f->length, p->unit);
+                       "%s.",
+                       f->length, p->unit,
+                       f->failure ? "the orbit is followed no further"
+                                  : "--t-end makes the run longer");
         else
             list_print(notes,
                        "Chaotic or regular: unknown, since the run ends at "

@@ -34,6 +34,7 @@ void stability_words(const plan *, const row rows[], size_t count, list *words);
 /* suggested_step.c: steps with which unstable and drifting rows keep an error of 1 % to
    the end of the run.
    cost  a few seconds an integrator at most, as nevh_counts_seconds */
+bool needs_shorter_step(const row *);
 void suggested_step_words(const plan *, const row rows[], size_t count,
                           list *words);
 

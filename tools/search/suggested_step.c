@@ -121,7 +121,7 @@ static suggested_step find(const plan *p, const row *r) {
     return look(&s);
 }
 
-static bool needs_shorter_step(const row *r) {
+bool needs_shorter_step(const row *r) {
     bool drifts = r->energy.verdict == NEVH_DRIFTS && r->energy.max > target;
     return r->ran && r->tolerance == 0 &&
            (drifts || r->energy.verdict == NEVH_UNSTABLE);
