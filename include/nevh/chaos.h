@@ -114,11 +114,11 @@ typedef struct {
 /* Zeros, and EARLY, before the first step and for NULL. */
 NEVH_API nevh_chaos_report nevh_chaos_result(const nevh_chaos *);
 /* The i-th exponent, counted from 0 and the largest: its mean over the starts
-   that agree, without the first tenth of the run.
+   that agree, without the first tenth of the run, or with friction the first half.
    error    out, may be NULL: standard error from batches in time or from the
             spread of the starts, whichever is larger, together with what linear
             growth, which is not exponential, leaves at this time, log(10)/(0.9
-            t); INFINITY before there is any
+            t), with friction log(2)/(0.5 t); INFINITY before there is any
    returns  NAN where there is none */
 NEVH_API double nevh_chaos_exponent(const nevh_chaos *, size_t i,
                                     double *error);
@@ -155,10 +155,15 @@ typedef struct {
     nevh_chaos_verdict verdict; /* that of the run, or UNRESOLVED: finer steps
                                    contradict it, or leave chaos open */
     bool agrees;                /* so do the exponents, by nevh_agree */
+    double
+        error; /* of the run's exponent; with friction no less than its difference
+                     from that of the finer steps */
 } nevh_chaos_confirmation;
 /* CHAOTIC and REGULAR of a run that has ended are confirmed; others are taken as
-   they are.  A finer run of chaos ends as soon as it is chaotic.
-   budget   of what the run cost; 0: a half
+   they are.  A finer run of chaos ends as soon as it is chaotic; with friction it
+   goes on, since chaos may be that before an attractor is reached, and must end with
+   the verdict of the run.
+   budget   of what the run cost; 0: a half, with friction four times that run
    returns  NEVH_OK; NEVH_ENOMEM; what the finer run returned: then nothing is
             confirmed, and the verdict is UNRESOLVED */
 NEVH_API int nevh_chaos_confirm(const nevh_chaos *, double budget,

@@ -8,7 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double tolerance = 1e-10, usual_seconds = 2, usual_budget = 0.5;
+static const double tolerance = 1e-10, usual_seconds = 2;
+static const double usual_budget = 0.5, damped_budget = 4;
 enum { STARTS = 4, LOOKS = 1024, PIECES = 64, LARGEST = 4096 };
 
 /* The cost of gradients of many pieces, above that of few, which
@@ -121,9 +122,22 @@ static void chaos_confirm_judge(const nevh_chaos_report *run, double value,
     to->verdict = holds ? run->verdict : NEVH_UNRESOLVED;
 }
 
+/* With friction the steps decide on the attractor, as steps of any length have some:
+   finer ones must have the same verdict, at the end, and their exponent is within the
+   error. */
+static void judge_damped(const nevh_chaos_report *run, double value,
+                         double error, nevh_chaos_confirmation *to) {
+    const nevh_chaos_finding *f = &to->found;
+    chaos_confirm_judge(run, value, error, to);
+    to->error = hypot(error, value - f->exponent);
+    if (f->report.verdict != run->verdict)
+        to->verdict = NEVH_UNRESOLVED;
+}
+
 static int confirm(const nevh_chaos *c, const nevh_finer *f, double seconds,
                    nevh_chaos_confirmation *to) {
     nevh_chaos_report run = nevh_chaos_result(c);
+    bool damped = nevh_system_friction(c->system, NULL);
     double error, value = nevh_chaos_exponent(c, 0, &error);
     nevh_chaos *finer = finer_chaos(c, f);
     int status = nevh_chaos_status(finer);
@@ -131,10 +145,11 @@ static int confirm(const nevh_chaos *c, const nevh_finer *f, double seconds,
     snprintf(to->text, sizeof to->text, "%s", nevh_finer_text(f));
     if (!status)
         status = chaos_confirm_follow(finer, run.t, seconds,
-                                      run.verdict == NEVH_CHAOTIC, &to->found);
+                                      run.verdict == NEVH_CHAOTIC && !damped,
+                                      &to->found);
     nevh_chaos_free(finer);
     if (!status)
-        chaos_confirm_judge(&run, value, error, to);
+        (damped ? judge_damped : chaos_confirm_judge)(&run, value, error, to);
     return status;
 }
 
@@ -142,9 +157,13 @@ int nevh_chaos_confirm(const nevh_chaos *c, double budget,
                        nevh_chaos_confirmation *to) {
     if (!c || !c->planned || !to)
         return c ? NEVH_EINVAL : NEVH_ENOMEM;
-    double part = budget > 0 ? budget : usual_budget;
+    bool damped = nevh_system_friction(c->system, NULL);
+    double usual = damped ? damped_budget : usual_budget;
+    double part = budget > 0 ? budget : usual;
+    int kinds = NEVH_FINER_ADAPTIVE | (damped ? 0 : NEVH_FINER_STEPS);
     nevh_chaos_verdict verdict = nevh_chaos_result(c).verdict;
     *to = (nevh_chaos_confirmation){.verdict = verdict, .agrees = true};
+    nevh_chaos_exponent(c, 0, &to->error);
     if (verdict != NEVH_CHAOTIC && verdict != NEVH_REGULAR)
         return NEVH_OK;
     nevh_finer *f = nevh_finer_new(
@@ -154,7 +173,7 @@ int nevh_chaos_confirm(const nevh_chaos *c, double budget,
                                .t0 = c->t_start,
                                .dt = c->way * c->dt,
                                .steps = (size_t)c->start[0].clock.done,
-                               .kinds = NEVH_FINER_ADAPTIVE | NEVH_FINER_STEPS,
+                               .kinds = (unsigned)kinds,
                                .budget = part});
     int status = nevh_finer_status(f);
     to->verdict = NEVH_UNRESOLVED;

@@ -3,7 +3,9 @@
 #include "diagnose/chaos_private.h"
 #include <math.h>
 
-static const double dropped = 0.1; /* of the run, while displacements align */
+/* Parts of the run: while displacements align; and while a damped motion, of which
+   all may be chaotic at first, comes to its attractor. */
+static const double aligning = 0.1, settling = 0.5;
 static const double aligned = 1e-8, aligned_by_differences = 1e-6;
 static const double significant = 3; /* errors of an exponent of chaos */
 /* All growth of chaos, as a logarithm: starts near by, which are 1e-4 apart, have
@@ -20,11 +22,15 @@ static double chaos_report_elapsed(const nevh_chaos *c, size_t start) {
     return c->start[start].clock.done * c->dt;
 }
 
+static double dropped(const nevh_chaos *c) {
+    return nevh_system_friction(c->system, NULL) ? settling : aligning;
+}
+
 static size_t first_bin(const nevh_chaos *c, size_t start) {
     const nevh__chaos_clock *clock = &c->start[start].clock;
-    double t = 0;
+    double t = 0, from = dropped(c) * chaos_report_elapsed(c, start);
     size_t b = 0;
-    while (b < clock->bin && t < dropped * chaos_report_elapsed(c, start))
+    while (b < clock->bin && t < from)
         t += clock->span[b++];
     return b;
 }
@@ -76,7 +82,8 @@ static void add_halves(const nevh_chaos *c, size_t start, size_t log,
 
 /* The exponent that linear growth leaves. */
 static double resolution(const nevh_chaos *c, size_t start) {
-    return -log(dropped) / ((1 - dropped) * chaos_report_elapsed(c, start));
+    double part = dropped(c);
+    return -log(part) / ((1 - part) * chaos_report_elapsed(c, start));
 }
 
 double nevh__chaos_rate(const nevh_chaos *c, size_t start, size_t i) {

@@ -165,4 +165,27 @@ for v in 'max(abs(x) - 1, 0)^2 + y^2/2' 'abs(x)^3 + y^2/2' 'max(x, 0)^3 + x^2 + 
     exits 0 chaos $work/play.nevh --integrators verlet
     has ': regular: the largest exponent is 0 within'
 done
+# With friction steps may have an attractor of their own: that of H has 0.0225, -0.053
+# and, after a transient of thousands of units of time, -0.042.
+# driven NAME V DRIVE RATE DT
+driven() {
+    printf '%s\n' '[coordinates]' 'x = 0.3' '[effects]' 'K = p_x^2/2' "V = $2" \
+        "D = $3" '[friction]' "f = all: $4" '[run]' 't_end = 500' "dt = $5" \
+        'integrators = verlet' >$work/$1.nevh
+}
+driven chaos '-cos(x)' '-1.0845*x*sin(0.6667*t)' 0.5 0.05
+exits 0 chaos $work/chaos.nevh --format csv
+holds '$6 < $7 && $6 + 2*$7 > 0.0225 && $10 == "unresolved"'
+exits 0 chaos $work/chaos.nevh --dt 0.0125 --t-end 4000 --format csv
+holds '$6 > 0.018 && $6 < 0.027 && $10 == "chaotic"'
+driven well '-x^2/2 + x^4/4' '-0.37*x*cos(1.2*t)' 0.3 0.1
+exits 0 chaos $work/well.nevh --format csv
+holds 'abs($6 + 0.053) < 2*$7 && $10 == "regular"'
+exits 0 chaos $work/well.nevh --dt 0.0125 --t-end 4000 --format csv
+holds 'abs($6 + 0.053) < 2*$7 && $7 < 0.003 && $10 == "regular"'
+driven late '-cos(x)' '-1.1*x*sin(0.6667*t)' 0.5 0.05
+exits 0 chaos $work/late.nevh --format csv
+holds '$6 > 0.05 && $10 == "unresolved"'
+exits 0 chaos $work/late.nevh --integrators gauss4 --t-end 20000 --format csv
+holds 'abs($6 + 0.042) < 2*$7 && $10 == "regular"'
 exit $status

@@ -53,6 +53,13 @@ static estimates estimates_new(const chaos_job *j, const row *r) {
     return l;
 }
 
+/* The error of the first exponent at the end is that of H, finer steps being known. */
+static double error_at(const row *r, const estimates *l, size_t i) {
+    bool last = i == 0 && l->now.t == nevh_chaos_result(r->chaos).t;
+    return last && r->confirmed.how != NEVH_FINER_NONE ? r->confirmed.error
+                                                       : l->error[i];
+}
+
 /* A verdict that finer steps contradict at the end is no better before it. */
 static nevh_chaos_verdict verdict_at(const row *r, const estimates *l) {
     bool last = l->now.verdict == nevh_chaos_result(r->chaos).verdict;
@@ -68,7 +75,7 @@ static void put_exponents(chaos_job *j, const row *r, estimates *l) {
         put_number(j, now.t);
         table_shown(j->result.table, "%zu", i + 1);
         put_number(j, l->value[i]);
-        put_number(j, l->error[i]);
+        put_number(j, error_at(r, l, i));
         put_number(j, now.sali);
         put_number(j, now.megno);
         table_text(j->result.table, nevh_chaos_verdict_name(verdict_at(r, l)));
@@ -201,6 +208,8 @@ static void row_words(chaos_job *j, const row *r) {
         return;
     }
     double error, value = nevh_chaos_exponent(r->chaos, 0, &error);
+    if (r->confirmed.how != NEVH_FINER_NONE)
+        error = r->confirmed.error;
     char *what =
         now.verdict == NEVH_CHAOTIC
             ? text_print("chaotic: nearby orbits separate e-fold every %.3g",
