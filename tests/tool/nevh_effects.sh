@@ -189,6 +189,17 @@ for error in 0.3 0.01 1e-4 1e-9; do
         { fails "leaves out '$found', not '$fewest'"; cat $work/subsets; }
     has '^needed: kinetic, spring'
 done
+# Two that cancel, though what each of them does is thousands of times the error, or as
+# large as the motion; not two that nearly do.
+for each in '0.001 0.001 K, V\.' '0.3 0.3 K, V\.' '0.001 0.0011 K, V, A, B\.'; do
+    set -- $each
+    printf '%s\n' '[coordinates]' 'x = 1' 'y = 0.2' '[effects]' \
+        'K = (p_x^2 + p_y^2)/2' 'V = (x^2 + y^2)/2' "A = $1*x^4" "B = -$2*x^4" \
+        'C = 1e-9*x*y' '[run]' 't_end = 50' 'dt = 0.05' >$work/cancel.nevh
+    shift 2
+    exits 0 effects $work/cancel.nevh --needed x --error 1e-6
+    has "^needed: $*"
+done
 exits 2 effects $work/needed.nevh --needed x
 says 'needs --error'
 exits 2 effects $work/needed.nevh --needed xx --error 1e-3

@@ -1,8 +1,8 @@
 /* nevh effects --needed: the fewest effects that keep an observable.
 
    Sets are runs.  A run without each effect says how the observable changes along
-   the orbit; the sum of these over a set predicts what the set changes, so that pairs
-   that cancel are found.  Sets are run from the fewest effects on, the best predicted
+   the orbit; the sum of these over a set predicts what the set changes.  Changes that are
+   large do not add up: pairs that cancel are found by runs without both.  Sets are run from the fewest effects on, the best predicted
    first, except for those that are predicted to miss the error by far.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "impact_private.h"
@@ -14,6 +14,12 @@ enum { SAMPLES = 500, MOST = 16 }; /* effects that can be switched */
 static const double by_far = 30;
 static const double hardly = 1e-6; /* of its size: no range to speak of */
 
+/* Effects that change little together, and what they do. */
+typedef struct {
+    unsigned off;
+    double *change;
+} pair;
+
 /* Sets are bits of effects that are off. */
 typedef struct {
     plan *plan;
@@ -24,6 +30,8 @@ typedef struct {
     double *whole, *part; /* the observable, of all effects and of some */
     double *change[MOST];
     double scale, alone[MOST], error;
+    pair pairs[MOST / 2];
+    size_t n_pairs;
 } search;
 
 /* Returns whether the run with a set switched off has all its values. */
@@ -87,18 +95,54 @@ static void take_each(search *x) {
     }
 }
 
+/* True if both change the observable by much, and nearly as much. */
+static bool may_cancel(const search *x, size_t i, size_t j) {
+    static const double alike = 2;
+    double a = x->alone[i], b = x->alone[j];
+    return i != j && !x->essential[i] && !x->essential[j] && a < alike * b &&
+           b < alike * a && fmin(a, b) > x->error;
+}
+
+/* Each effect is of one pair at most. */
+static void take_pairs(search *x) {
+    static const double little = 0.25; /* of what each of them does alone */
+    unsigned taken = 0;
+    double *change = tool_allocate(SAMPLES, sizeof *change);
+    for (size_t i = 0; i < x->count; i++)
+        for (size_t j = 0; j < i; j++) {
+            unsigned off = 1u << i | 1u << j;
+            if (taken & off || !may_cancel(x, i, j) ||
+                change_of(x, off, change) >
+                    little * fmin(x->alone[i], x->alone[j]))
+                continue;
+            taken |= off;
+            x->pairs[x->n_pairs++] = (pair){off, change};
+            change = tool_allocate(SAMPLES, sizeof *change);
+        }
+    free(change);
+}
+
+/* The sum of changes by a set at a sample; pairs are known as such. */
+static double sum_at(const search *x, unsigned off, size_t k) {
+    double sum = 0;
+    for (size_t i = 0; i < x->n_pairs; i++)
+        if ((off & x->pairs[i].off) == x->pairs[i].off) {
+            sum += x->pairs[i].change[k];
+            off &= ~x->pairs[i].off;
+        }
+    for (size_t i = 0; i < x->count; i++)
+        sum += off >> i & 1 ? x->change[i][k] : 0;
+    return sum;
+}
+
 /* The change that is predicted of a set; infinite with an essential effect. */
 static double predicted(const search *x, unsigned off) {
     double most = 0;
     for (size_t i = 0; i < x->count; i++)
         if (off >> i & 1 && x->essential[i])
             return INFINITY;
-    for (size_t k = 0; k < x->kept; k++) {
-        double sum = 0;
-        for (size_t i = 0; i < x->count; i++)
-            sum += off >> i & 1 ? x->change[i][k] : 0;
-        most = fmax(most, fabs(sum));
-    }
+    for (size_t k = 0; k < x->kept; k++)
+        most = fmax(most, fabs(sum_at(x, off, k)));
     return most / x->scale;
 }
 
@@ -182,6 +226,8 @@ static int find(const options *o, plan *p, search *x) {
     int status = take_whole(x);
     if (!status)
         take_each(x);
+    if (!status)
+        take_pairs(x);
     return status;
 }
 
@@ -206,6 +252,8 @@ int needed(const options *o, plan *p) {
         free(x.effect[i]);
         free(x.change[i]);
     }
+    for (size_t i = 0; i < x.n_pairs; i++)
+        free(x.pairs[i].change);
     free(x.whole);
     free(x.part);
     page_free(&result);
