@@ -103,9 +103,13 @@ static nevh_verdict judge_rounding(const nevh_energy_report *r, double times) {
     return walks ? NEVH_RANDOM_WALK : NEVH_UNDECIDED;
 }
 
+/* Rounding of gradients leads an orbit that moves far to one side, too, though along no
+   line: nothing is seen of a scheme that is exact, as in uniform gravity. */
 static nevh_verdict judge_loss(const nevh_energy_report *r) {
     bool gone = r->gone || r->least > lasting * r->max;
-    return has_slope(r) || gone ? NEVH_DRIFTS : NEVH_UNDECIDED;
+    bool leans = isfinite(r->gradient) && r->max <= r->gradient &&
+                 r->straightness < straight;
+    return (has_slope(r) || gone) && !leans ? NEVH_DRIFTS : NEVH_UNDECIDED;
 }
 
 static nevh_verdict judge_growth(const nevh_energy_report *r) {

@@ -353,4 +353,25 @@ for start in '1e-4 1e-3' '1e-6 1e-3' '1e-3 0' '1e-8 1e-6'; do
     verdicts verlet=bounded 'rk4=(drifts|undecided)'
     has '^# energy_scale: 0\.2[56]'
 done
+
+# In uniform gravity heun and rk4 are exact, and the error is the rounding of differences;
+# at rest and in free flight there is none.  Elsewhere they drift.
+scene 'x = 0, 3\ny = 0, 4' 'K = (p_x^2 + p_y^2)/2\nV = 9.81*y' 't_end = 10\ndt = 0.1' gravity
+compares $work/gravity.nevh --integrators verlet,heun,rk4,euler
+verdicts verlet=bounded heun=undecided rk4=undecided euler=unstable
+scene 'x = 0, 3\ny = 0, 4' 'K = (p_x^2 + p_y^2)/2\nV = 9.81*y + y^4/1e3' \
+    't_end = 10\ndt = 0.1' bent
+compares $work/bent.nevh --integrators heun,rk4
+verdicts heun=drifts rk4=drifts
+scene 'x = 1' 'K = p_x^2/2\nV = x^4/4 - x^2/2' 't_end = 100\ndt = 0.1' still
+exits 0 compare $work/still.nevh --integrators rk4
+has 'rk4 at dt = 0.1: the energy error is 0 throughout'
+lacks 'hidden|drift that'
+exits 0 recommend $work/still.nevh --energy-error 1e-8
+has 'Take '
+has 'the shortest period of the orbit, at the start'
+lacks 'energy drifts|too short|The verdict on its'
+exits 0 recommend pendulum --energy-error 1e-3 --integrators rk4
+has 'Its energy drifts'
+has 'the shortest period of the orbit, at t = [1-9]'
 exit $status

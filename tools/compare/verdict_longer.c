@@ -99,11 +99,16 @@ void verdict_open_words(const plan *p, const row rows[], size_t count,
                    "%s: it stopped at t = %.4g%s, too early for a verdict on "
                    "the energy.",
                    subject, r->stopped, p->unit);
+    else if (is_hidden(&r->energy) && e->max == 0)
+        list_print(words,
+                   "%s: the energy error is 0 throughout, as that of any "
+                   "scheme at rest or in free flight.",
+                   subject);
     else if (is_hidden(&r->energy))
         list_print(
             words,
-            "%s: the error is that of rounding%s; the drift that %s adds "
-            "with each step is hidden below it.",
+            "%s: the error is that of rounding%s; a drift that %s adds "
+            "with each step, if this motion has one, is hidden below it.",
             subject,
             strcmp(r->gradient, "exact") == 0 ? "" : " in the gradient",
             r->integrator);

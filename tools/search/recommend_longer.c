@@ -68,6 +68,7 @@ static plan longer_plan(recommendation *a) {
 static void find_period(recommendation *a) {
     trial_run f = trial_run_new(&a->search.plan, false);
     a->period = f.frequency > 0 ? 2 * acos(-1) / f.frequency : NAN;
+    a->period_at = f.frequency_at;
     free(f.failure);
 }
 

@@ -16,6 +16,7 @@ typedef struct {
     study *best, *second;  /* with another integrator; NULL: none */
     study *alone, *steady; /* from values of H; without drift */
     double period;         /* the shortest that the orbit has; NAN: unknown */
+    double period_at;      /* when it has that */
     double longer;         /* the end of the longer runs */
     char *not_longer;      /* why there are none; NULL */
 } recommendation;

@@ -134,15 +134,20 @@ static void size_words(const recommendation *a, const row *r, list *words) {
 
 /* In the orbit's own measure. */
 static void step_words(const recommendation *a, const row *r, list *words) {
+    const plan *p = &a->search.plan;
     double steps = a->period / r->dt;
+    bool at_start = a->period_at == p->run->t_start;
+    char *where = at_start ? text_print("at the start")
+                           : text_print("at t = %.3g", a->period_at);
     if (isfinite(steps))
         list_print(words,
                    steps < 1 ? "A step is %.3g times %.3g%s, the shortest "
-                               "period near the start of the orbit."
+                               "period of the orbit, %s%s."
                              : "That is %.3g steps in %.3g%s, the shortest "
-                               "period near the start of the orbit.",
-                   steps < 1 ? 1 / steps : steps, a->period,
-                   a->search.plan.unit);
+                               "period of the orbit, %s%s.",
+                   steps < 1 ? 1 / steps : steps, a->period, p->unit, where,
+                   at_start ? "" : p->unit);
+    free(where);
 }
 
 static void longer_words(const recommendation *a, const row *r, list *words) {
@@ -194,14 +199,17 @@ static void warn(const recommendation *a, const row *r, list *words) {
 
 /* On its energy, as far as the run, or a longer one, decides it. */
 static void drift_words(const row *r, list *words) {
-    if (row_drifts(r))
+    nevh_verdict verdict = r->energy.verdict;
+    bool open = verdict == NEVH_UNDECIDED;
+    bool still = r->energy.max == 0 && !(r->longer.max > 0);
+    if (verdict == NEVH_DRIFTS)
         list_add(words, "Its energy drifts: for longer runs ask again.");
-    if (r->followed > 0 && (r->open || r->energy.verdict != NEVH_BOUNDED))
+    if (r->followed > 0 && !open && (r->open || verdict != NEVH_BOUNDED))
         list_print(
             words,
             "The verdict on its energy is from a run %.3g times as long.",
             r->followed);
-    if (r->energy.verdict == NEVH_UNDECIDED)
+    if (open && !still)
         list_print(words,
                    "The run is too short to show whether its energy drifts: "
                    "nevh compare, or a longer --t-end, follows it further.");
