@@ -94,6 +94,19 @@ exits 0 frequencies $work/free.nevh
 has '^verlet, x: no frequencies: it changes along a straight line, by 1 a unit of'
 test "$(grep -c '^ verlet' $work/out)" = 0 || fails "has lines of a straight motion"
 lacks 'chaotic'
+# Nor is what falls, or goes on while it oscillates, on no straight line.
+printf '[coordinates]\nx = 0\n[effects]\nK = p_x^2/2\nV = 9.81*x\n[run]\nt_end = 10
+dt = 0.1\nintegrators = verlet\n' >$work/fall.nevh
+exits 0 frequencies $work/fall.nevh
+has '^verlet, x: no frequencies: it goes one way all the time, from 0 to -49[01]'
+lacks 'straight'
+printf '[coordinates]\nx = 0, 1\n[effects]\nK = p_x^2/2 - p_x/5\nV = x*0 - 0.2*x*sin(t)
+[run]\nt_end = 100\ndt = 0.1\nintegrators = verlet\n' >$work/sway.nevh
+exits 0 frequencies $work/sway.nevh
+has '^verlet, x: no frequencies: it goes one way all the time'
+exits 0 frequencies $work/sway.nevh --start p_x=0.1
+has '^verlet, x: no frequencies: it changes by 0\.[01][0-9]* a unit of time in'
+lacks 'straight'
 # Nor is what goes one way all the time.
 printf '[coordinates]\nx = 0.1, 0.1\n[effects]\nK = p_x^2/2\nV = -x^2/2\n[run]\nt_end = 8
 dt = 0.1\nintegrators = verlet\n' >$work/escape.nevh

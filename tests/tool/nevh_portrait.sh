@@ -109,6 +109,7 @@ has '^degenerate at x = 0, p_x = 0: '
 plane '0*x' 'range(-1, 1, 4)'
 has '^degenerate equilibria fill a curve'
 test $(places | wc -l) = 1 || fails "lists a line"
+has '^degenerate at x = 0\.2, p_x = 0: ' # the start, which is the nearest
 # Of any unit of energy.
 plane '1e-20*cos(x)' 'range(-4, 4, 5)'
 has '^saddle at x = 0, p_x = 0: H = 1e-20$'

@@ -18,7 +18,7 @@ static bool is_monotone(const double x[], size_t count) {
 bool frequencies_line_words(list *words, const char *integrator,
                             const char *name, const double x[], size_t count,
                             double h) {
-    static const double straight = 0.9;
+    static const double trend = 0.9, rounding = 1e-10; /* parts of squares */
     double n = (double)count, mean = 0, tt = 0, tx = 0, xx = 0;
     for (size_t k = 0; k < count; k++)
         mean += x[k] / n;
@@ -26,8 +26,9 @@ bool frequencies_line_words(list *words, const char *integrator,
         double t = (double)k - (n - 1) / 2, d = x[k] - mean;
         tt += t * t, tx += t * d, xx += d * d;
     }
-    bool line = xx > 0 && tx * tx > straight * tt * xx;
-    if (line)
+    bool line = xx > 0 && tx * tx > trend * tt * xx;
+    bool straight = line && xx - tx * tx / tt <= rounding * xx;
+    if (straight)
         list_print(words,
                    "%s, %s: no frequencies: it changes along a straight line, "
                    "by %.3g a unit of time: it is not periodic, or the run is "
@@ -38,6 +39,12 @@ bool frequencies_line_words(list *words, const char *integrator,
                    "%s, %s: no frequencies: it goes one way all the time, from "
                    "%.4g to %.4g: it is not periodic, or the run is too short.",
                    integrator, name, x[0], x[count - 1]);
+    else if (line)
+        list_print(words,
+                   "%s, %s: no frequencies: it changes by %.3g a unit of time "
+                   "in the mean, which is most of its motion: it is not "
+                   "periodic, or the run is too short.",
+                   integrator, name, tx / tt / h);
     return line || is_monotone(x, count);
 }
 

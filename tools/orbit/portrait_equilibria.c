@@ -182,6 +182,18 @@ static void search(const survey *s, size_t i, size_t k) {
     }
 }
 
+/* The start, where it is one: of a curve of them the grid has others. */
+static void search_start(const survey *s) {
+    static const double near = 1e-2;
+    const plan *p = s->l->plan;
+    const double start[2] = {(p->q[0] - s->low[0]) / s->cell[0],
+                             (p->p[0] - s->low[1]) / s->cell[1]};
+    double z[2] = {start[0], start[1]};
+    if (refine(s, z) && fabs(z[0] - start[0]) < near &&
+        fabs(z[1] - start[1]) < near)
+        add(s, z);
+}
+
 static void measure_row(const survey *s, size_t k, const double t[]) {
     nevh_field *field = s->l->field;
     double *f = s->f + k * COLUMNS, *g = f + COLUMNS * ROWS;
@@ -275,6 +287,7 @@ void levels_find_equilibria(levels *l) {
     s.low[0] = w->low_x - s.cell[0];
     s.low[1] = w->low_y - s.cell[1];
     measure(&s);
+    search_start(&s);
     for (size_t k = 0; k + 1 < ROWS; k++)
         for (size_t i = 0; i + 1 < COLUMNS; i++) {
             bool inside = i > 0 && k > 0;
