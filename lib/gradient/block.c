@@ -178,7 +178,8 @@ int nevh__block_fail(nevh_field *f, const nevh__planned *term,
         return nevh__fail(
             &f->report, NEVH_EDOM,
             "the orbit has grown beyond all numbers: term \"%s\" of effect "
-            "\"%s\"%s has no value at %s: take a smaller step",
+            "\"%s\"%s has no value at %s: end the run before, or take a "
+            "smaller step where steps make it grow",
             decl->name, decl->effect, which, where);
     return nevh__fail(
         &f->report, NEVH_EDOM,

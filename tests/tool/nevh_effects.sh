@@ -189,8 +189,8 @@ for error in 0.3 0.01 1e-4 1e-9; do
         { fails "leaves out '$found', not '$fewest'"; cat $work/subsets; }
     has '^needed: kinetic, spring'
 done
-# Two that cancel, though what each of them does is thousands of times the error, or as
-# large as the motion; not two that nearly do.
+# Two that cancel, though what each of them does is thousands of times the error, or
+# whatever one of them keeps from escaping; not two that nearly do.
 for each in '0.001 0.001 K, V\.' '0.3 0.3 K, V\.' '0.001 0.0011 K, V, A, B\.'; do
     set -- $each
     printf '%s\n' '[coordinates]' 'x = 1' 'y = 0.2' '[effects]' \
@@ -200,6 +200,23 @@ for each in '0.001 0.001 K, V\.' '0.3 0.3 K, V\.' '0.001 0.0011 K, V, A, B\.'; d
     exits 0 effects $work/cancel.nevh --needed x --error 1e-6
     has "^needed: $*"
 done
+# Without the springs the solution ends: no step is too long.
+cat >$work/ends.nevh <<'END'
+[coordinates]
+x = 0.4
+y = 0.1
+[effects]
+K = (p_x^2 + p_y^2)/2
+V = (x^2 + y^2)/2
+C = x^2*y - y^3/3
+[run]
+t_end = 100
+dt = 0.1
+integrators = verlet
+END
+exits 0 effects $work/ends.nevh --impact
+has '^Without V the run fails: the solution itself ends at'
+lacks 'smaller step'
 exits 2 effects $work/needed.nevh --needed x
 says 'needs --error'
 exits 2 effects $work/needed.nevh --needed xx --error 1e-3

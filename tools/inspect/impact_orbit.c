@@ -79,7 +79,7 @@ trace trace_run(const plan *p, const char *integrator) {
     nevh_stepper *s = plan_stepper(p, integrator);
     o.status = go(&o, s, &(nevh_observer){keep, &o, 1});
     if (o.status)
-        o.message = text_print("%s", nevh_stepper_message(s));
+        o.message = plan_why(p, nevh_stepper_message(s));
     else
         measure(&o, s);
     nevh_field *field = nevh_stepper_field(s);

@@ -95,12 +95,13 @@ static void take_each(search *x) {
     }
 }
 
-/* True if both change the observable by much, and nearly as much. */
+/* True if both change the observable by much, and nearly as much or up to where one
+   has no such run. */
 static bool may_cancel(const search *x, size_t i, size_t j) {
     static const double alike = 2;
     double a = x->alone[i], b = x->alone[j];
-    return i != j && !x->essential[i] && !x->essential[j] && a < alike * b &&
-           b < alike * a && fmin(a, b) > x->error;
+    bool alone = x->essential[i] || x->essential[j];
+    return fmin(a, b) > x->error && (alone || (a < alike * b && b < alike * a));
 }
 
 /* Each effect is of one pair at most. */
@@ -113,7 +114,7 @@ static void take_pairs(search *x) {
             unsigned off = 1u << i | 1u << j;
             if (taken & off || !may_cancel(x, i, j) ||
                 change_of(x, off, change) >
-                    little * fmin(x->alone[i], x->alone[j]))
+                    little * fmin(1, fmin(x->alone[i], x->alone[j])))
                 continue;
             taken |= off;
             x->pairs[x->n_pairs++] = (pair){off, change};
@@ -135,11 +136,16 @@ static double sum_at(const search *x, unsigned off, size_t k) {
     return sum;
 }
 
-/* The change that is predicted of a set; infinite with an essential effect. */
+/* The change that is predicted of a set; infinite with an essential effect that is of no
+   pair. */
 static double predicted(const search *x, unsigned off) {
     double most = 0;
+    unsigned single = off;
+    for (size_t i = 0; i < x->n_pairs; i++)
+        if ((off & x->pairs[i].off) == x->pairs[i].off)
+            single &= ~x->pairs[i].off;
     for (size_t i = 0; i < x->count; i++)
-        if (off >> i & 1 && x->essential[i])
+        if (single >> i & 1 && x->essential[i])
             return INFINITY;
     for (size_t k = 0; k < x->kept; k++)
         most = fmax(most, fabs(sum_at(x, off, k)));
