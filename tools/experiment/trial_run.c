@@ -19,12 +19,15 @@ typedef struct {
     const plan *plan;
     trial_run *found;
     largest_rates fastest;
-    nevh_field *field;    /* for values */
-    nevh_field *gradient; /* the first that is asked for */
-    double scale;         /* of the energy */
-    double *length;       /* 2n */
-    double *z, *before;   /* 2n */
-    double *trial;        /* 2n */
+    nevh_field *field;           /* for values */
+    nevh_field *gradient;        /* the first that is asked for */
+    nevh_field *exact;           /* the same, exact */
+    double *slopes;              /* 4n: of both */
+    double steepest, most_wrong; /* of exact slopes; of errors of the others */
+    double scale;                /* of the energy */
+    double *length;              /* 2n */
+    double *z, *before;          /* 2n */
+    double *trial;               /* 2n */
     nevh_stepper *stepper;
     bool ends;               /* the orbit, or what may be spent, at a time */
     double looks, instances; /* instances: of terms, in H */
@@ -96,12 +99,32 @@ static void look_for_noise(trial *f, double t) {
         f->found->noise = fmax(f->found->noise, noise / f->scale);
 }
 
+/* Errors of the first gradient at the state, of truncation for the most part. */
+static void look_for_errors(trial *f, double t) {
+    size_t n = f->plan->n;
+    double *a = f->slopes, *b = a + 2 * n;
+    const double *q = f->trial, *p = q + n;
+    if (f->instances > large ||
+        nevh_field_gradient(f->exact, 1, &t, q, p, a, a + n) ||
+        nevh_field_gradient(f->gradient, 1, &t, q, p, b, b + n))
+        return;
+    for (size_t k = 0; k < 2 * n; k++) {
+        double wrong = fabs(a[k] - b[k]);
+        f->steepest = fmax(f->steepest, fabs(a[k]));
+        if (wrong > f->most_wrong) {
+            f->most_wrong = wrong;
+            f->found->wrong_at = t;
+        }
+    }
+}
+
 static void look(trial *f, int i, double t) {
     size_t n = f->plan->n;
     f->looks++;
     memcpy(f->trial, f->z, 2 * f->plan->n * sizeof *f->z);
     largest_rates_observe(&f->fastest, 0, t, f->trial, f->trial + n);
     look_for_noise(f, t);
+    look_for_errors(f, t);
     if (i % EDGE_EVERY == 0 && n <= MOST_DOF)
         look_for_edge(f, t);
 }
@@ -243,6 +266,8 @@ trial_run trial_run_new(const plan *p, bool chaos) {
     o.gradient_step = 0;
     f.field = plan_values(p);
     f.gradient = nevh_field_new(p->system, &given);
+    f.exact = nevh_field_new(p->system, &o);
+    f.slopes = tool_allocate(4 * p->n, sizeof *f.slopes);
     f.scale = plan_energy_scale(p);
     f.instances = (double)nevh_field_counts(f.field).instances;
     f.slope = cost_of_gradient(&f);
@@ -255,6 +280,7 @@ trial_run trial_run_new(const plan *p, bool chaos) {
             judge(&f);
         nevh_stepper_free(f.stepper);
     }
+    found.wrong = f.steepest > 0 ? f.most_wrong / f.steepest : 0;
     found.frequency = f.fastest.frequency;
     found.frequency_at = f.fastest.frequency_at;
     found.rate = f.fastest.rate;
@@ -263,6 +289,8 @@ trial_run trial_run_new(const plan *p, bool chaos) {
     nevh_rates_free(f.fastest.rates);
     nevh_field_free(f.field);
     nevh_field_free(f.gradient);
+    nevh_field_free(f.exact);
+    free(f.slopes);
     free(f.length);
     free(f.z);
     free(f.before);
@@ -362,6 +390,28 @@ static void change_notes(const plan *p, list *notes) {
     time_notes(p, notes);
 }
 
+/* Where differences are far off, what their rounding causes means nothing. */
+static void gradient_notes(const plan *p, const trial_run *f, list *notes) {
+    static const double much = 1e-6, far_off = 1e-2;
+    const char *name = p->gradients.item[0];
+    if (isfinite(f->noise) && !(f->wrong > far_off))
+        list_print(notes,
+                   f->noise > 0
+                       ? "Gradient: the rounding of %s causes an energy error "
+                         "of %.1e over the run%s"
+                       : "Gradient: %s adds no rounding error of its own",
+                   name, f->noise,
+                   f->rough ? "; its differences err more where they reach "
+                              "across a place where H is not smooth"
+                            : "");
+    if (f->wrong > much && !f->rough)
+        list_print(notes,
+                   "Gradient: %s errs by %.1e of the largest derivative (t = "
+                   "%.4g%s): H varies there over shorter lengths than its "
+                   "differences are made for; --gradient exact does not err.",
+                   name, f->wrong, f->wrong_at, p->unit);
+}
+
 void trial_run_words(const plan *p, const trial_run *f, list *notes) {
     const char *rad = *p->unit ? " rad" : "";
     if (f->drive > f->frequency)
@@ -386,16 +436,7 @@ void trial_run_words(const plan *p, const trial_run *f, list *notes) {
                    f->rate, p->per_unit, f->rate_at, p->unit,
                    p->dt[0] * f->rate, p->dt[0], p->unit);
     outlook_notes(p, f, notes);
-    if (isfinite(f->noise))
-        list_print(notes,
-                   f->noise > 0
-                       ? "Gradient: the rounding of %s causes an energy error "
-                         "of %.1e over the run%s"
-                       : "Gradient: %s adds no rounding error of its own",
-                   p->gradients.item[0], f->noise,
-                   f->rough ? "; its differences err more where they reach "
-                              "across a place where H is not smooth"
-                            : "");
+    gradient_notes(p, f, notes);
     edge_notes(p, f, notes);
 }
 

@@ -60,6 +60,8 @@ typedef struct {
     nevh_chaos_finding chaos; /* unless that; of a longer time, too */
     double length;            /* time */
     double noise;             /* of the gradient: relative energy error; NAN */
+    double wrong, wrong_at;   /* largest error of the gradient, relative to the
+                                 largest derivative; when */
     bool rough;  /* H is not smooth on its way; false until somebody looks */
     double edge; /* of H: distance in lengths; INFINITY: none is near */
     size_t edge_variable; /* coordinates first */
