@@ -111,20 +111,20 @@ for one in $commands; do
         tries $one value $one $work/good.nevh $(needs $one) --set a=nothing
         takes $one output &&
             tries $one unwritable $one $work/good.nevh $(needs $one) \
-                -o /nonexistent/x
+                -o $work/none/x
         ;;
     *)
         tries $one good $one $(needs $one)
         tries $one option $one $(needs $one) --no-such-option
         takes $one output &&
-            tries $one unwritable $one $(needs $one) -o /nonexistent/x
+            tries $one unwritable $one $(needs $one) -o $work/none/x
         ;;
     esac
 done
 command='help --format json'
 test $tried -ge 120 || fails "has few commands: $tried cases were tried"
 for one in new help list; do
-    tries $one missing $one /nonexistent/x
+    tries $one missing $one $work/none/x
 done
 exits 2
 exits 2 none
