@@ -83,6 +83,8 @@ typedef struct {
     nevh_block_fn time_slope; /* NULL, or the derivative with respect to t, in
                                  block form: for the balance of the energy,
                                  else found by differences */
+    bool curved; /* is known to be no polynomial of degree 2 or less; else its
+                    values and derivatives at some states decide */
 } nevh_term;
 
 /* Properties of the sum of the enabled terms. */

@@ -389,6 +389,14 @@ static gsl_root_fsolver *make_solver(void) {
     return memory ? gsl_root_fsolver_alloc(gsl_root_fsolver_brent) : NULL;
 }
 
+/* True if a term that is on is known to be no polynomial of degree 2. */
+static bool is_curved(const nevh_system *s) {
+    for (size_t i = 0; i < s->n_terms; i++)
+        if (nevh__term_on(s, s->terms[i]) && s->terms[i]->decl.curved)
+            return true;
+    return false;
+}
+
 static bool try_kinds(trial *b, nevh__exact_solution *e) {
     e->n = b->n;
     if (b->n > 1) {
@@ -399,7 +407,7 @@ static bool try_kinds(trial *b, nevh__exact_solution *e) {
     if (recognise(b, e))
         return true;
     e->kind = NEVH__OSCILLATOR;
-    return recognise(b, e);
+    return !is_curved(b->system) && recognise(b, e);
 }
 
 static void recognise_divide(trial *b, double *memory, long double *gradient) {

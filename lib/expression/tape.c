@@ -15,6 +15,51 @@ size_t nevh__tape_length(const nevh__tape *tape) {
     return tape->length;
 }
 
+enum { NO_POLYNOMIAL = 64 };
+
+static unsigned degree_of(const unsigned degree[], nevh__tape_operand o) {
+    return o.kind == NEVH__SLOT                     ? degree[o.at]
+           : o.kind == NEVH__Q || o.kind == NEVH__P ? 1
+                                                    : 0;
+}
+
+static unsigned applied(unsigned operation, unsigned a, unsigned b) {
+    switch (operation) {
+    case NEVH__ADD:
+    case NEVH__SUBTRACT:
+        return a > b ? a : b;
+    case NEVH__MULTIPLY:
+        return a + b;
+    case NEVH__DIVIDE:
+        return b ? NO_POLYNOMIAL : a;
+    case NEVH__NEGATE:
+        return a;
+    case NEVH__SQUARE:
+        return 2 * a;
+    case NEVH__CUBE:
+        return 3 * a;
+    default:
+        return a || b ? NO_POLYNOMIAL : 0;
+    }
+}
+
+/* True if no polynomial of degree 2 in q and p, as it is written. */
+static bool is_curved(const nevh__tape *tape) {
+    unsigned degree[NEVH__TAPE_LIVE] = {0};
+    for (size_t i = 0; i < tape->length; i++) {
+        const nevh__instruction *at = &tape->code[i];
+        bool two = at->operation == NEVH__SINCOS ||
+                   nevh__operation_of(at->operation)->arity == 2;
+        unsigned a = degree_of(degree, at->a);
+        unsigned b = two ? degree_of(degree, at->b) : 0;
+        unsigned made = applied(at->operation, a, b);
+        degree[at->to] = made < NO_POLYNOMIAL ? made : NO_POLYNOMIAL;
+        if (at->operation == NEVH__SINCOS)
+            degree[at->also] = degree[at->to];
+    }
+    return degree_of(degree, tape->result) > 2;
+}
+
 void nevh__tape_shape(nevh_term *term, const nevh__tape *tape) {
     term->value = nevh__tape_value;
     term->block = nevh__tape_block;
@@ -26,6 +71,7 @@ void nevh__tape_shape(nevh_term *term, const nevh__tape *tape) {
     term->np = tape->count[NEVH__P];
     term->nc = tape->count[NEVH__C];
     term->time = nevh__tape_reads(tape, NEVH__T, 0);
+    term->curved = is_curved(tape);
 }
 
 static bool same_place(const nevh__tape *a, nevh__tape_operand x,

@@ -2,7 +2,8 @@
    -k/|q|?
 
    Forms are asked of the derivatives that a term brings, or of differences of its
-   values, which are exact for such a form.  Those at unit vectors give the
+   values, which are exact for such a form, unless the term is known to be none: it may
+   differ from one between all states that are tried.  Those at unit vectors give the
    coefficients; at other states, near and far, the derivatives have to be the linear
    functions that follow.  Values of -k/|q| are as they should be at other states.
    SPDX-License-Identifier: GPL-3.0-or-later */
@@ -206,7 +207,8 @@ static int classify(const nevh__term_entry *term, bool *form, bool *centre) {
                                   sizeof *room);
     if (!room)
         return NEVH_ENOMEM;
-    *form = *centre = true;
+    *form = !decl->curved;
+    *centre = true;
     for (size_t i = 0; *form && i < decl->count; i++)
         *form = nevh__form_find(term, i, room, room + nv * (nv + 1));
     for (size_t i = 0; *centre && i < decl->count; i++)

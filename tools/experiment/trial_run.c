@@ -390,7 +390,7 @@ static void change_notes(const plan *p, list *notes) {
     time_notes(p, notes);
 }
 
-/* Where differences are far off, what their rounding causes means nothing. */
+/* The rounding of differences that are far off means nothing. */
 static void gradient_notes(const plan *p, const trial_run *f, list *notes) {
     static const double much = 1e-6, far_off = 1e-2;
     const char *name = p->gradients.item[0];
