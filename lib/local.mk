@@ -62,10 +62,6 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/value.c \
 	lib/gradient/time.c \
 	lib/gradient/gsl_system.c \
-	lib/elementary/elementary_number.h \
-	lib/elementary/elementary_text.h \
-	lib/elementary/elementary_edges.h \
-	lib/elementary/elementary_lanes.h \
 	lib/expression/tape_private.h \
 	lib/expression/tape_inside_private.h \
 	lib/expression/operations_private.h \

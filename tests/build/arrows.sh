@@ -4,7 +4,7 @@
 # files of the library have the same name, and what one file alone uses is static.
 
 srcdir=${srcdir:-.}
-order='elementary system expression taylor gradient work implicit integrators native run diagnose
+order='system expression taylor gradient work implicit integrators native run diagnose
     ensemble scene models
     tools/cli tools/experiment tools/plot tools/orbit tools/inspect tools/search
     tools/compare tools/hard tools/report tools'
