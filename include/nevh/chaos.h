@@ -155,9 +155,8 @@ typedef struct {
     nevh_chaos_verdict verdict; /* that of the run, or UNRESOLVED: finer steps
                                    contradict it, or leave chaos open */
     bool agrees;                /* so do the exponents, by nevh_agree */
-    double
-        error; /* of the run's exponent; with friction no less than its difference
-                     from that of the finer steps */
+    double error; /* of the run's exponent; with friction at least its
+                     difference from that of the finer steps */
 } nevh_chaos_confirmation;
 /* CHAOTIC and REGULAR of a run that has ended are confirmed; others are taken as
    they are.  A finer run of chaos ends as soon as it is chaotic; with friction it

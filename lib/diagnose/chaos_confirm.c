@@ -160,7 +160,8 @@ int nevh_chaos_confirm(const nevh_chaos *c, double budget,
     bool damped = nevh_system_friction(c->system, NULL);
     double usual = damped ? damped_budget : usual_budget;
     double part = budget > 0 ? budget : usual;
-    int kinds = NEVH_FINER_ADAPTIVE | (damped ? 0 : NEVH_FINER_STEPS);
+    unsigned kinds = NEVH_FINER_ADAPTIVE;
+    kinds |= damped ? 0u : NEVH_FINER_STEPS;
     nevh_chaos_verdict verdict = nevh_chaos_result(c).verdict;
     *to = (nevh_chaos_confirmation){.verdict = verdict, .agrees = true};
     nevh_chaos_exponent(c, 0, &to->error);
@@ -173,7 +174,7 @@ int nevh_chaos_confirm(const nevh_chaos *c, double budget,
                                .t0 = c->t_start,
                                .dt = c->way * c->dt,
                                .steps = (size_t)c->start[0].clock.done,
-                               .kinds = (unsigned)kinds,
+                               .kinds = kinds,
                                .budget = part});
     int status = nevh_finer_status(f);
     to->verdict = NEVH_UNRESOLVED;

@@ -32,11 +32,11 @@ static void begin_panel(plot **to, const plan *p, const row *r) {
     free(text);
 }
 
-static void draw_row(plot *to, const plan *p, const row *r) {
+static void draw_row(plot *to, const plan *p, double turns, const row *r) {
     char *name = r->tolerance > 0 && p->tolerances > 1
                      ? text_print("%s, %g", r->integrator, r->tolerance)
                      : text_print("%s", r->integrator);
-    energy_plot_add(to, p, name, r->integrator, r->errors);
+    energy_plot_add(to, p, turns, name, r->integrator, r->errors);
     free(name);
 }
 
@@ -76,17 +76,17 @@ int compare_plot(const options *o, const plan *p, const row rows[],
                  size_t count) {
     plot *to = NULL;
     size_t panels = 0;
-    plan shown = *p, turning = *p;
+    plan shown = *p;
+    double turns = orbit_turns_of(p);
     shown.t_end = shown_end(p, rows, count);
-    turning.turns = orbit_turns_of(p);
     for (size_t i = 0; i < count; i++) {
         panels += begins(rows, i);
         if (!rows[i].ran || panels > MOST_PANELS)
             continue;
         if (begins(rows, i))
-            begin_panel(&to, &turning, &rows[i]);
+            begin_panel(&to, p, &rows[i]);
         plot_span_x(to, p->run->t_start, shown.t_end);
-        draw_row(to, &turning, &rows[i]);
+        draw_row(to, p, turns, &rows[i]);
     }
     if (!to) {
         bool failed = false;
@@ -96,7 +96,7 @@ int compare_plot(const options *o, const plan *p, const row rows[],
         return failed ? TOOL_FAILED : TOOL_USAGE;
     }
     plot_same_ranges(to, INFINITY);
-    char *more = energy_plot_words(&turning);
+    char *more = energy_plot_words(p, turns);
     note_failed(p, rows, count, &more);
     plot_note_run(to, &shown, NULL, more);
     free(more);

@@ -49,7 +49,6 @@ typedef struct {
     double observable_scale; /* that its errors are divided by */
     bool observable_level;   /* its size, not its range */
     double observable_error; /* what that of the reference makes of it */
-    double turns;            /* of the motion in the run; 0: not known */
     energies *energies;      /* whose energies rows compare; NULL: none */
     bool error_bounds;       /* rows have one */
     stepper_cache *steppers; /* of steppers */

@@ -44,8 +44,10 @@ static double work_of(const trial *f) {
     nevh_counts step = nevh_stepper_counts(f->stepper);
     nevh_counts value = nevh_field_counts(f->field);
     nevh_counts noise = nevh_field_counts(f->gradient);
-    double gradients = (double)(step.gradients + noise.gradients) +
-                       f->looks * rates_gradients(f->plan->n);
+    nevh_counts exact = nevh_field_counts(f->exact);
+    double gradients =
+        (double)(step.gradients + noise.gradients + exact.gradients) +
+        f->looks * rates_gradients(f->plan->n);
     return (double)(step.values + value.values + noise.values) +
            gradients * f->slope;
 }

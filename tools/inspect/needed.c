@@ -2,8 +2,9 @@
 
    Sets are runs.  A run without each effect says how the observable changes along
    the orbit; the sum of these over a set predicts what the set changes.  Changes that are
-   large do not add up: pairs that cancel are found by runs without both.  Sets are run from the fewest effects on, the best predicted
-   first, except for those that are predicted to miss the error by far.
+   large do not add up: pairs that cancel are found by runs without both.  Sets are run
+   from the fewest effects on, the best predicted first, except for those that are
+   predicted to miss the error by far.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "impact_private.h"
 #include <math.h>

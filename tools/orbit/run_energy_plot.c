@@ -21,7 +21,8 @@ static nevh_energy *new_energy(const plan *p, const nevh_stepper *s) {
     return energy;
 }
 
-static void draw_energy(plot *to, const run_picture *picture, const orbit *o) {
+static void draw_energy(plot *to, const run_picture *picture, double turns,
+                        const orbit *o) {
     const plan *p = &o->plan;
     nevh_stepper *s = new_stepper(p, o->integrator);
     nevh_energy *energy = new_energy(p, s);
@@ -32,7 +33,7 @@ static void draw_energy(plot *to, const run_picture *picture, const orbit *o) {
     if (plan_run(p, s, p->dt[0], observers, 2, &stopped) && !picture->quiet)
         tool_refuse("%s: %s failed: %s", p->name, o->integrator,
                     nevh_stepper_message(s));
-    energy_plot_add(to, &picture->plan,
+    energy_plot_add(to, &picture->plan, turns,
                     picture->orbits.count > 1 ? o->name : NULL, o->integrator,
                     trace.envelope);
     nevh_energy_free(energy);
@@ -41,11 +42,11 @@ static void draw_energy(plot *to, const run_picture *picture, const orbit *o) {
 }
 
 plot *plot_energy(run_picture *picture) {
-    picture->plan.turns = orbit_turns_of(&picture->plan);
+    double turns = orbit_turns_of(&picture->plan);
     plot *to = energy_plot_new(&picture->plan, picture->plan.title, NULL);
     for (size_t i = 0; i < picture->orbits.count; i++)
-        draw_energy(to, picture, &picture->orbits.item[i]);
-    char *more = energy_plot_words(&picture->plan);
+        draw_energy(to, picture, turns, &picture->orbits.item[i]);
+    char *more = energy_plot_words(&picture->plan, turns);
     picture_note(picture, to, more);
     free(more);
     return to;

@@ -10,10 +10,10 @@ enum { MOST_POINTS = 300 };           /* of a line */
 
 /* The number of points of a line: a period of the motion or more each, where the run has
    some periods, so that oscillations do not fill the panel. */
-static size_t points_of(const plan *p) {
+static size_t points_of(double turns) {
     static const double some = 10, half = 0.5; /* what a count may be above */
-    return p->turns >= some ? (size_t)fmin(p->turns - half, MOST_POINTS)
-                            : MOST_POINTS;
+    return turns >= some ? (size_t)fmin(turns - half, MOST_POINTS)
+                         : MOST_POINTS;
 }
 
 /* True if a point stands for several steps. */
@@ -36,9 +36,9 @@ const char *energy_plot_largest(const plan *p) {
                       : "largest energy error, relative";
 }
 
-char *energy_plot_words(const plan *p) {
+char *energy_plot_words(const plan *p, double turns) {
     const char *time = nevh_scene_label(p->scene, "t");
-    double bin = (p->t_end - p->run->t_start) / (double)points_of(p);
+    double bin = (p->t_end - p->run->t_start) / (double)points_of(turns);
     char *scale = text_print("errors relative to %.4g%s", plan_energy_scale(p),
                              p->energy_unit);
     char *text = has_bins(p) ? text_print("%s, the largest in each %.2g%s%s",
@@ -94,7 +94,7 @@ static bool is_first(size_t seen, size_t each, size_t parts) {
 }
 
 /* The largest of a few parts each where there are many. */
-void energy_plot_add(plot *to, const plan *p, const char *name,
+void energy_plot_add(plot *to, const plan *p, double turns, const char *name,
                      const char *integrator, const envelope *e) {
     size_t parts = 0, last = 0, largest = 0, seen = 0,
            series = plot_series(to, name);
@@ -106,10 +106,9 @@ void energy_plot_add(plot *to, const plan *p, const char *name,
             last = i;
         }
     /* A run that ends early has bins as long as those of the others. */
-    size_t whole = points_of(p) < MOST_POINTS && has_bins(p)
-                       ? parts * ENVELOPE_PARTS / (last + 1)
-                       : parts;
-    size_t points = has_bins(p) ? points_of(p) : MOST_POINTS;
+    size_t points = has_bins(p) ? points_of(turns) : MOST_POINTS;
+    size_t whole =
+        points < MOST_POINTS ? parts * ENVELOPE_PARTS / (last + 1) : parts;
     size_t each = (whole + points - 1) / points;
     for (size_t i = 0; i < ENVELOPE_PARTS; i++) {
         if (e->part[i].value < 0)
