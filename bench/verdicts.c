@@ -72,7 +72,7 @@ static void tell_wrong(survey *v, const orbit *o, const subject *s,
             scene, nevh_integrator_name(s->scheme), s->plan->gradients.item[0],
             s->dt, s->t_end, verdict, label_name(known->is), evidence);
     fflush(v->wrong);
-    free(evidence);
+    tool_release(evidence);
 }
 
 /* The rule: that of nevh compare. */
@@ -86,7 +86,7 @@ static const char *judge(survey *v, subject *s) {
     double begin = cpu_seconds();
     row_run(&p, &r);
     v->judging += cpu_seconds() - begin;
-    free(r.status);
+    tool_release(r.status);
     s->scale = r.energy.scale;
     return r.ran ? nevh_verdict_name(r.energy.verdict) : NULL;
 }
@@ -196,7 +196,6 @@ static int survey_scene(survey *v, const orbit *o) {
         survey_plan(v, o, &p);
     if (!status)
         plan_free(&p);
-    options_free(&given);
     return status;
 }
 

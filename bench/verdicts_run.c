@@ -41,13 +41,13 @@ void runs_open(const char *name) {
         keep(r);
         r = tool_allocate(1, sizeof *r);
     }
-    free(r);
+    tool_release(r);
     fseek(file, 0, SEEK_END);
 }
 
 void runs_close(void) {
     for (size_t i = 0; i < count; i++)
-        free(runs[i]);
+        tool_release(runs[i]);
     free(runs);
     if (file)
         fclose(file);
@@ -203,8 +203,8 @@ static void make_run(const subject *s, long_run *r, double work) {
     do
         begin(&f);
     while (integrate(&f, work));
-    free(f.effects);
-    free(rows);
+    tool_release(f.effects);
+    tool_release(rows);
 }
 
 /* Energies at the start that are small by chance are no scale: the row says so. */
@@ -213,7 +213,7 @@ static void rescale(const subject *s, long_run *r) {
         nevh_system_effect_count(s->plan->system) + 1, sizeof *effects);
     double largest, start = scale_at_start(s, effects, &largest);
     float factor = s->scale > 0 ? (float)(start / s->scale) : 1;
-    free(effects);
+    tool_release(effects);
     if (fabsf(factor - 1) < 1e-6F)
         return;
     for (size_t i = 0; i < WINDOWS; i++) {

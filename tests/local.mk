@@ -146,6 +146,7 @@ tests_robust_check_hard_pendulum_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_tool_check_grid_SOURCES = tests/tool/check_grid.c tools/search/grid.c
 tests_tool_check_plot_thin_SOURCES = tests/tool/check_plot_thin.c \
 	tools/plot/plot_thin.c \
+	tools/cli/memory.c \
 	tools/cli/words.c
 tests_hard_check_hard_cases_SOURCES = tests/hard/check_hard_cases.c \
 	tests/hard/hard_judge.h \
@@ -157,6 +158,7 @@ tests_hard_check_hard_cases_SOURCES = tests/hard/check_hard_cases.c \
 	tools/hard/hard_cases.h \
 	tools/hard/hard_cases.c \
 	tools/experiment/stability.c \
+	tools/cli/memory.c \
 	tools/cli/words.c
 tests_hard_check_hard_cases_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE
 tests_ensemble_check_random_LDADD = $(INSIDE_LIBS)

@@ -1,7 +1,6 @@
 /* nevh: the list of commands, and whether one takes what it is given.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
-#include <stdlib.h>
 #include <string.h>
 
 #define COMMAND_OF(name) &name##_command,
@@ -16,7 +15,6 @@ const command *command_find(const char *name) {
         list_add(&names, commands[i]->name);
     if (!commands[i])
         tool_unknown("command", name, &names);
-    list_free(&names);
     return commands[i];
 }
 
@@ -31,22 +29,16 @@ static int refuse_option(const command *c, const option_row *row) {
         if (command_takes(commands[i], row))
             list_add(&those, commands[i]->name);
     char *text = list_joined(&those);
-    int status =
-        tool_refuse(those.count <= FEW ? "--%s is no option of nevh "
-                                         "%s; it is for %s"
-                                       : "--%s is no option of nevh %s",
-                    row->name, c->name, text);
-    free(text);
-    list_free(&those);
-    return status;
+    return tool_refuse(those.count <= FEW ? "--%s is no option of nevh "
+                                            "%s; it is for %s"
+                                          : "--%s is no option of nevh %s",
+                       row->name, c->name, text);
 }
 
 static bool draws(const command *c, const char *kind) {
     list kinds = {0};
     list_split_at(&kinds, c->draws ? c->draws : "", '|');
-    bool does = list_has(&kinds, kind);
-    list_free(&kinds);
-    return does;
+    return list_has(&kinds, kind);
 }
 
 static int check_plot_kind(const command *c, const char *kind) {
@@ -61,10 +53,6 @@ static int check_plot_kind(const command *c, const char *kind) {
     char *usual = list_sentence(&kinds, "or");
     tool_refuse("--plot-kind %s is for %s; of nevh %s it is %s, or not given",
                 kind, others, c->name, usual);
-    free(others);
-    free(usual);
-    list_free(&those);
-    list_free(&kinds);
     return TOOL_USAGE;
 }
 
@@ -78,7 +66,5 @@ int command_check(const command *c, const options *o) {
         return TOOL_OK;
     list kinds = {0};
     list_split_at(&kinds, option_find("plot-kind")->words, '|');
-    int status = check_plot_kind(c, kinds.item[o->plot.kind - PLOT_KIND_phase]);
-    list_free(&kinds);
-    return status;
+    return check_plot_kind(c, kinds.item[o->plot.kind - PLOT_KIND_phase]);
 }

@@ -4,7 +4,6 @@
 #include "cli/commands.h"
 #include "config.h"
 #include <signal.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* The meaning of each exit status. */
@@ -56,7 +55,6 @@ static void print_all(FILE *f) {
                     i + 1 < STATUSES ? ";" : ".");
     fputc('\n', f);
     help_print(f, 0, 0, text);
-    free(text);
     fputc('\n', f);
     help_print(f, 0, 0,
                "The manual is info nevh, in the sources info doc/nevh.info; as "
@@ -140,10 +138,8 @@ static void print_parts(const char *name, const char *before, const char *text,
     for (size_t i = 0; i < parts.count; i++) {
         char *part = text_print("%s%s", before, parts.item[i]);
         print_member(i ? ", " : "", part);
-        free(part);
     }
     fputs(text ? "]" : "", stdout);
-    list_free(&parts);
 }
 
 static void print_command_json(const command *c) {

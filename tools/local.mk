@@ -11,6 +11,7 @@ tools_nevh_SOURCES = \
 	tools/cli/options_private.h \
 	tools/cli/options.c \
 	tools/cli/arguments.c \
+	tools/cli/memory.c \
 	tools/cli/words.c \
 	tools/cli/numbers.c \
 	tools/cli/table_private.h \
@@ -177,7 +178,7 @@ tools_nevh_SOURCES = \
 	tools/orbit/flow_plot.c \
 	tools/orbit/flow.c \
 	tools/search/cost_plot.c
-tools_nevh_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE \
+tools_nevh_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE -DNEVH_COMMAND \
 	-DNEVH_SCENES='"$(scenesdir)"' -DNEVH_PAGE='"$(pkgdatadir)/page.html"' \
 	-DNEVH_PACKAGE='"$(pythondir)"'
 tools_nevh_LDADD = libnevh.la $(GSL_LIBS)

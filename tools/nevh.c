@@ -64,6 +64,5 @@ int main(int argc, char **argv) {
     int status = options_read(&o, argc, argv);
     if (!status)
         status = end_output(dispatch(&o));
-    options_free(&o);
     return status;
 }

@@ -175,7 +175,7 @@ static hard_verdict judge_energy(const hard_subject *s, hard_result *r) {
     if (most > r->bound || climbs(s, r))
         return HARD_NONE;
     if (r->state_error > r->state_bound) {
-        free(r->happened);
+        tool_release(r->happened);
         r->happened = text_print(
             "energy error %.1e, but at t = %.4g it is off by %.1e of the "
             "orbit's size, where theory allows %.1e",
@@ -188,7 +188,7 @@ static hard_verdict judge_energy(const hard_subject *s, hard_result *r) {
 static hard_verdict judge_explosion(const hard_subject *s, hard_result *r) {
     char *cause = tell_cause(s, r);
     r->happened = text_print("energy error %.1e: %s", r->energy.max, cause);
-    free(cause);
+    tool_release(cause);
     return is_explained(s, r) ? HARD_UNSTABLE : HARD_NONE;
 }
 
@@ -196,7 +196,7 @@ static hard_verdict judge_failure(const hard_subject *s, hard_result *r) {
     char *cause = tell_cause(s, r);
     r->happened =
         text_print("after %zu steps: %s; %s", r->steps, r->reason, cause);
-    free(cause);
+    tool_release(cause);
     return is_explained(s, r) ? HARD_FAILED : HARD_NONE;
 }
 

@@ -114,8 +114,8 @@ static void integrate(const hard_subject *s, nevh_stepper *m,
     r->sound = finite_state(s, q, p) && !isnan(r->energy.max) &&
                (!r->status || strlen(r->reason) > 10);
     nevh_energy_free(g.energy);
-    free(q);
-    free(p);
+    tool_release(q);
+    tool_release(p);
 }
 
 /* In units of the largest coordinate and momentum at the start. */
@@ -130,7 +130,7 @@ static void turn_back(const hard_subject *s, nevh_stepper *m, hard_result *r) {
     if (nevh_reversal_defect(m, s->t, s->dt, (size_t)r->asked, s->q, s->p,
                              scale, &r->defect))
         r->sound = false;
-    free(scale);
+    tool_release(scale);
 }
 
 /* Where it is fastest, should the run have gone elsewhere than the case. */
@@ -207,6 +207,6 @@ void hard_run(const hard_subject *s, double budget, hard_result *r) {
 }
 
 void hard_result_free(hard_result *r) {
-    free(r->reason);
-    free(r->happened);
+    tool_release(r->reason);
+    tool_release(r->happened);
 }

@@ -83,7 +83,7 @@ static int follow(spread *d, const hard_subject *s, nevh_stepper *m,
     nevh_stepper_reset(m);
     int status = nevh_run(m, s->t, (k->t_end - s->t) / SAMPLES, SAMPLES, q, p,
                           &(nevh_observer){look, d, 1}, 1);
-    free(q);
+    tool_release(q);
     return status;
 }
 
@@ -99,8 +99,8 @@ static void find_growth(hard_orbit *k, const hard_subject *s) {
         k->growth[i] =
             lost ? INFINITY : fmax(d.growth[i], i ? k->growth[i - 1] : 1);
     nevh_stepper_free(m);
-    free(d.state);
-    free(d.growth);
+    tool_release(d.state);
+    tool_release(d.growth);
 }
 
 /* Of what H does by itself: gradients at the start, at the times of the track.
@@ -126,7 +126,7 @@ static double find_drive(const hard_orbit *k, const hard_subject *s) {
         if (high[j] > low[j])
             drive = fmax(drive, 2 * steepest[j] / (high[j] - low[j]));
     nevh_field_free(f);
-    free(g);
+    tool_release(g);
     return drive;
 }
 
@@ -137,7 +137,7 @@ static double find_outside(const hard_orbit *k, const hard_subject *s) {
     nevh_system_friction(k->system, rates);
     for (size_t i = 0; i < k->n; i++)
         most = fmax(most, rates[i]);
-    free(rates);
+    tool_release(rates);
     bool driven = !(nevh_system_traits(k->system) & NEVH_AUTONOMOUS);
     return most + (driven ? find_drive(k, s) : 0);
 }
@@ -155,7 +155,7 @@ static void find_pace(hard_orbit *k, const hard_subject *s) {
         k->pace[i] = fmax(k->pace[i], growth) + outside;
     }
     nevh_rates_free(rates);
-    free(at);
+    tool_release(at);
 }
 
 /* The orbits of H given as values alone are those of the same H in formulas. */
@@ -202,9 +202,9 @@ void hard_orbit_free(hard_orbit *k) {
         return;
     nevh_reference_free(k->reference);
     nevh_scene_free(k->scene);
-    free(k->range);
-    free(k->t);
-    free(k);
+    tool_release(k->range);
+    tool_release(k->t);
+    tool_release(k);
 }
 
 struct hard_state {
@@ -272,7 +272,7 @@ static double find_gradient_error(const hard_orbit *k, nevh_field *f) {
     }
     for (size_t i = 0; i < 2 * k->n; i++)
         most = fmax(most, error[i] / k->range[i]);
-    free(error);
+    tool_release(error);
     return doubt * most;
 }
 
@@ -351,7 +351,7 @@ void hard_state_take(hard_state *w, hard_result *r) {
     r->state_at = w ? w->t : NAN;
     if (!w)
         return;
-    free(w->bound);
-    free(w->state);
-    free(w);
+    tool_release(w->bound);
+    tool_release(w->state);
+    tool_release(w);
 }

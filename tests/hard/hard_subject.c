@@ -12,7 +12,7 @@ static const double most_work = 1e6;
 nevh_scene *hard_scene(const char *name) {
     char *file = scene_file(name);
     nevh_scene *scene = file ? nevh_scene_read(file) : NULL;
-    free(file);
+    tool_release(file);
     return scene;
 }
 
@@ -21,7 +21,7 @@ static int change(nevh_scene *scene, const char *settings) {
     int status = NEVH_OK;
     for (char *one; !status && (one = strsep(&rest, ";"));)
         status = nevh_scene_set(scene, one + strspn(one, " "));
-    free(copy);
+    tool_release(copy);
     return status;
 }
 
@@ -114,8 +114,8 @@ static void integrate(hard_subject *s, survey *v, const nevh_options *o) {
     nevh_run(m, s->t, span / SAMPLES, SAMPLES, q, p,
              &(nevh_observer){look, v, 1}, 1);
     nevh_stepper_free(m);
-    free(q);
-    free(p);
+    tool_release(q);
+    tool_release(p);
 }
 
 static double energy_scale(const hard_subject *s, const nevh_options *o) {
@@ -146,8 +146,8 @@ static void explore(hard_subject *s) {
         s->peak = 1;
     nevh_rates_free(v.fastest.rates);
     nevh_field_free(v.field);
-    free(v.effects);
-    free(v.slope);
+    tool_release(v.effects);
+    tool_release(v.slope);
 }
 
 int hard_open(hard_subject *s, const hard_known *known) {
@@ -168,6 +168,6 @@ void hard_close(hard_subject *s) {
     hard_orbit_free(s->orbit);
     nevh_system_free(s->own);
     nevh_scene_free(s->scene);
-    free(s->q);
-    free(s->p);
+    tool_release(s->q);
+    tool_release(s->p);
 }

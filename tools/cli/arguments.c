@@ -44,7 +44,6 @@ int read_names(options *o, const option_row *row, const char *argument) {
         else
             list_print(target(o, row), "%s%s", before, name);
     }
-    list_free(&names);
     return status;
 }
 
@@ -99,19 +98,17 @@ int read_tolerance(options *o, const option_row *row, const char *argument) {
     list texts = {0};
     int status = TOOL_OK;
     list_split(&texts, argument);
-    free(o->tolerance);
     o->tolerance = tool_allocate(texts.count, sizeof *o->tolerance);
     o->tolerances = texts.count;
     for (size_t i = 0; !status && i < texts.count; i++)
         status = positive(row->name, texts.item[i], &o->tolerance[i]);
-    list_free(&texts);
     return status;
 }
 
 /* Formulas, whose commas inside of parentheses stay. */
 int read_formulas(options *o, const option_row *row, const char *argument) {
     list *l = target(o, row);
-    list_free(l);
+    *l = (list){0};
     for (;;) {
         int depth = 0;
         size_t length = 0;
@@ -175,7 +172,6 @@ int read_stop_after(options *o, const option_row *row, const char *argument) {
     const char *unit = length ? strchr(units, argument[length - 1]) : NULL;
     char *number = text_print("%.*s", (int)(length - (unit != NULL)), argument);
     int status = positive(row->name, number, &o->stop_after);
-    free(number);
     o->stop_after *= unit ? seconds[unit - units] : 1;
     return status;
 }
@@ -190,7 +186,6 @@ int read_task(options *o, const option_row *row, const char *argument) {
               : tool_refuse("--task is written 3/16, not \"%s\"", argument);
     if (!status)
         status = whole(row->name, slash + 1, &o->tasks);
-    free(part);
     if (!status && o->task > o->tasks)
         return tool_refuse("--task %s: there are %zu", argument, o->tasks);
     return status;
@@ -204,14 +199,11 @@ int read_choice(options *o, const option_row *row, const char *argument) {
     while (i < words.count && strcmp(argument, words.item[i]) != 0)
         i++;
     if (i == words.count) {
-        char *text = list_sentence(&words, "or");
-        status =
-            tool_refuse("--%s is %s, not \"%s\"", row->name, text, argument);
-        free(text);
+        status = tool_refuse("--%s is %s, not \"%s\"", row->name,
+                             list_sentence(&words, "or"), argument);
     }
     i += row->first;
     memcpy(target(o, row), &i, sizeof i);
-    list_free(&words);
     return status;
 }
 

@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "commands.h"
 #include "tool.h"
-#include <stdlib.h>
 #include <string.h>
 
 static const char *fits(const nevh_integrator *s) {
@@ -104,8 +103,6 @@ static int list_scenes(table *t, const options *o) {
     }
     if (!names.count)
         status = scenes_missing();
-    list_free(&names);
-    list_free(&files);
     return status;
 }
 
@@ -128,8 +125,6 @@ static int list_all(const options *o) {
         tool_unknown("kind", name, &names);
     else if (!lists[i](p.table, o))
         status = output_page(o, &p, TOOL_OK);
-    list_free(&names);
-    page_free(&p);
     return status;
 }
 

@@ -3,7 +3,6 @@
 #include "commands.h"
 #include "tool.h"
 #include <errno.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -13,9 +12,7 @@ static char *text_from(const options *o, const char *file) {
     nevh_scene *scene;
     if (scene_open_named(&scene, o->from, o))
         return NULL;
-    char *text = nevh_scene_write(scene, file);
-    if (!text)
-        tool_refuse("out of memory");
+    char *text = text_adopt(tool_owned(nevh_scene_write(scene, file)));
     nevh_scene_free(scene);
     return text;
 }
@@ -47,11 +44,9 @@ static char *file_of(const char *name) {
 static int make_file(const options *o, const char *file) {
     char *text = o->from ? text_from(o, file) : text_print("%s", scene_sample);
     int status = text ? write_new(file, text) : TOOL_USAGE;
-    free(text);
     if (!status && !o->quiet) {
-        char *next = shell_word(text_print("nevh compare"), file);
-        printf("%s is made.   Next: %s\n", file, next);
-        free(next);
+        printf("%s is made.   Next: %s\n", file,
+               shell_word(text_print("nevh compare"), file));
     }
     return status;
 }
@@ -63,9 +58,7 @@ static int new_scene(const options *o) {
         return tool_refuse("--set, --with and --without change the scene that "
                            "--from names");
     char *file = file_of(o->operands.item[1]);
-    int status = make_file(o, file);
-    free(file);
-    return status;
+    return make_file(o, file);
 }
 
 const command new_command = {

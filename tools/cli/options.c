@@ -4,7 +4,6 @@
 #include <assert.h>
 #include <getopt.h>
 #include <stddef.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* A member of the options, whose type is checked: kind, reader, place. */
@@ -218,7 +217,6 @@ int command_takes_known(const command *c) {
             status = tool_refuse("nevh %s takes %s, which is neither an option "
                                  "nor a group of options",
                                  c->name, words.item[i]);
-    list_free(&words);
     return status;
 }
 
@@ -226,10 +224,8 @@ bool command_takes(const command *c, const option_row *row) {
     list words = {0};
     list_split_at(&words, c->options, ' ');
     list_add(&words, "ALL");
-    bool takes = list_has(&words, row->name) ||
-                 (row->group && list_has(&words, row->group));
-    list_free(&words);
-    return takes;
+    return list_has(&words, row->name) ||
+           (row->group && list_has(&words, row->group));
 }
 
 bool option_given(const options *o, const char *name) {
@@ -243,10 +239,7 @@ static int unknown_option(const char *text) {
     char *name = text_print("%.*s", (int)strcspn(text, "="), text);
     for (const option_row *row = option_rows; row->name; row++)
         list_print(&names, "--%s", row->name);
-    int status = tool_unknown("option", name, &names);
-    list_free(&names);
-    free(name);
-    return status;
+    return tool_unknown("option", name, &names);
 }
 
 enum { KNOWN = sizeof option_rows / sizeof *option_rows - 1, FIRST = 256 };
@@ -305,18 +298,4 @@ void settings_notes(const options *o, list *notes) {
             list_print(notes, "set: %s", o->settings.item[i] + 1);
         else if (o->settings.item[i][0] == '@')
             list_print(notes, "start: %s", o->settings.item[i] + 1);
-}
-
-void options_free(options *o) {
-    list_free(&o->given);
-    list_free(&o->operands);
-    list_free(&o->settings);
-    list_free(&o->integrators);
-    list_free(&o->gradients);
-    list_free(&o->sections);
-    list_free(&o->variants);
-    list_free(&o->vary);
-    list_free(&o->dt);
-    list_free(&o->at);
-    free(o->tolerance);
 }

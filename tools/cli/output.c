@@ -197,9 +197,6 @@ static void forget(output *o) {
     remember(o->made, NULL);
     if (o->locks)
         close(o->former);
-    free(o->name);
-    free(o->temporary);
-    free(o->made);
 }
 
 FILE *regular_open(const char *name) {
@@ -222,7 +219,8 @@ int output_open(output *o, const char *name) {
     *o = (output){.stream = stdout};
     if (!name)
         return TOOL_OK;
-    o->name = realpath(name, NULL); /* what a symbolic link stands for */
+    o->name =
+        text_adopt(realpath(name, NULL)); /* what a symbolic link stands for */
     if (!o->name)
         o->name = text_print("%s", name);
     if (can_be_replaced(o->name))
@@ -250,13 +248,10 @@ static int lock_former(output *o, const char *name, const char *who) {
         o->made = text_print("%s", name);
     o->former = open(name, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     o->locks = o->former >= 0;
-    char *real = o->made && o->locks ? realpath(name, NULL) : NULL;
-    if (real) { /* the file, not a link that stands for it */
-        free(o->made);
+    char *real = o->made && o->locks ? text_adopt(realpath(name, NULL)) : NULL;
+    if (real) /* the file, not a link that stands for it */
         o->made = real;
-    }
     if (!o->locks) {
-        free(o->made);
         o->made = NULL;
         return tool_refuse("%s cannot be written: %s", name, strerror(errno));
     }

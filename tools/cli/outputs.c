@@ -1,13 +1,12 @@
 /* nevh: that no output is written over what is read, or over another output.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tool.h"
-#include <stdlib.h>
 #include <inttypes.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* The file that writing through a dangling symbolic link would create; to be freed. */
+/* The file that writing through a dangling symbolic link would create. */
 static char *follow(const char *file) {
     enum { MOST_LINKS = 40, MOST_BYTES = 4096 };
     char target[MOST_BYTES], *at = text_print("%s", file);
@@ -18,7 +17,6 @@ static char *follow(const char *file) {
         const char *slash = strrchr(at, '/');
         int folder = slash && *target != '/' ? (int)(slash - at) + 1 : 0;
         char *next = text_print("%.*s%.*s", folder, at, (int)length, target);
-        free(at);
         at = next;
     }
     return at;
@@ -34,7 +32,6 @@ static bool places_are_same(const char *a, const char *b) {
             slash ? text_print("%.*s", (int)(slash - name[i]) + 1, name[i])
                   : text_print(".");
         bool found = stat(path, &folder[i]) == 0;
-        free(path);
         if (!found)
             return strcmp(a, b) == 0;
         name[i] = slash ? slash + 1 : name[i];
@@ -46,10 +43,7 @@ static bool places_are_same(const char *a, const char *b) {
 
 static bool is_same_place(const char *a, const char *b) {
     char *first = follow(a), *second = follow(b);
-    bool same = places_are_same(first, second);
-    free(first);
-    free(second);
-    return same;
+    return places_are_same(first, second);
 }
 
 /* True if two names belong to one regular file, or would create one. */
@@ -93,9 +87,7 @@ static void outputs_add_rows(outputs *all, const options *o, const char *option,
     const char *ending = file ? ending_beside(o, file) : NULL;
     outputs_add(all, option, file);
     if (ending) {
-        char *beside = text_print("%s%s", file, ending);
-        outputs_add(all, option, beside);
-        free(beside);
+        outputs_add(all, option, text_print("%s%s", file, ending));
     }
 }
 
@@ -113,15 +105,9 @@ static void outputs_list(outputs *all, const options *o) {
     char *part = o->file ? output_part(o->file, o->task, o->tasks) : NULL;
     *all = (outputs){0};
     outputs_add_rows(all, o, "-o", part);
-    free(part);
     outputs_add(all, "--plot", o->plot.file);
     outputs_add(all, "--picture", o->picture);
     outputs_add(all, "--keep-plot-script", o->plot.script);
-}
-
-static void outputs_free(outputs *all) {
-    list_free(&all->options);
-    list_free(&all->files);
 }
 
 static int check_against(const outputs *all, const char *file,
@@ -152,13 +138,9 @@ static int check_inputs(const outputs *all, const options *o,
         status = check_against(all, data, "the measured points of --data");
     if (!status)
         status = check_against(all, kit, "the page without a scene");
-    free(data);
-    free(kit);
-    for (size_t i = 0; !status && (code = nevh_scene_code_path(scene, i));
-         i++) {
+    for (size_t i = 0;
+         !status && (code = text_adopt(nevh_scene_code_path(scene, i))); i++)
         status = check_against(all, code, "the scene's own C code");
-        free(code);
-    }
     return status;
 }
 
@@ -170,6 +152,5 @@ int outputs_check(const options *o, const nevh_scene *scene, const char *file) {
     outputs_add_rows(&all, o, "--resume", o->resume);
     if (!status)
         status = check_inputs(&all, o, scene, file);
-    outputs_free(&all);
     return status;
 }

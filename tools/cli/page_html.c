@@ -1,8 +1,6 @@
 /* nevh: a page as HTML: notes, a table with its headings, words.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "table_private.h"
-#include <stdlib.h>
-#include <string.h>
 
 void html_text(FILE *f, const char *text) {
     for (; *text; text++)

@@ -16,10 +16,11 @@ static const char ending[] = ".nevh";
 /* The folder that holds the program, without an end that libtool adds; NULL
    where the system does not tell. */
 static char *program_folder(void) {
-    char *program = realpath("/proc/self/exe", NULL);
+    char *program = text_adopt(realpath("/proc/self/exe", NULL));
 #ifdef __linux__
     if (!program) /* without /proc, as in a plain chroot */
-        program = realpath((const char *)getauxval(AT_EXECFN), NULL);
+        program =
+            text_adopt(realpath((const char *)getauxval(AT_EXECFN), NULL));
 #endif
     char *slash = program ? strrchr(program, '/') : NULL;
     if (slash)
@@ -45,16 +46,12 @@ static char *path_beside(const char *built, const char *installed) {
     else if (last)
         found = text_print("%.*s/share/nevh/%s", (int)(last - program), program,
                            installed);
-    free(program);
     return found;
 }
 
 static char *folder_beside(void) {
     char *found = path_beside("scenes", "scenes");
-    if (found && is_folder(found))
-        return found;
-    free(found);
-    return NULL;
+    return found && is_folder(found) ? found : NULL;
 }
 
 /* The folder of scenes that are given by name: NEVH_SCENES of the environment, else
@@ -87,9 +84,7 @@ void scenes_installed(list *names, list *files) {
                    file);
         if (files)
             list_print(files, "%s/%s", scenes_folder(), file);
-        free(entry[i]);
     }
-    free(entry);
 }
 
 static bool is_there(const char *name) {
@@ -106,31 +101,24 @@ char *data_file(const char *name) {
     char *file = text_print("%s/%s", scenes_folder(), name);
     if (!strchr(name, '/') && !is_there(name) && is_file(file))
         return file;
-    free(file);
     return text_print("%s", name);
 }
 
 char *package_folder(void) {
     char *beside = path_beside("scenes/../python", "python");
-    char *found = beside ? realpath(beside, NULL) : NULL; /* scenes is a link */
-    free(beside);
+    char *found = beside ? text_adopt(realpath(beside, NULL))
+                         : NULL; /* scenes is a link */
     return found ? found : text_print("%s", NEVH_PACKAGE);
 }
 
 char *library_file(void) {
     char *beside = path_beside(".libs/libnevh.so.0", "../../lib/libnevh.so.0");
-    if (beside && is_file(beside))
-        return beside;
-    free(beside);
-    return NULL;
+    return beside && is_file(beside) ? beside : NULL;
 }
 
 char *page_kit(void) {
     char *beside = path_beside("web/kit.html", "page.html");
-    if (beside && is_file(beside))
-        return beside;
-    free(beside);
-    return text_print("%s", NEVH_PAGE);
+    return beside && is_file(beside) ? beside : text_print("%s", NEVH_PAGE);
 }
 
 int scenes_missing(void) {
@@ -144,7 +132,6 @@ static char *suggestion(const char *name, const list *names) {
     char *file = text_print("%s%s", name, ending);
     if (is_file(file))
         return file;
-    free(file);
     const char *closest = list_closest(names, name);
     return closest ? text_print("%s", closest) : NULL;
 }
@@ -174,17 +161,12 @@ static int not_found(const char *name) {
         tool_refuse("there is no file %s, and there are no scenes in %s; set "
                     "NEVH_SCENES to the folder that holds them",
                     name, scenes_folder());
-    list_free(&names);
-    free(meant);
     return TOOL_USAGE;
 }
 
 char *scene_file(const char *name) {
     char *file = text_print("%s/%s%s", scenes_folder(), name, ending);
-    if (is_file(file))
-        return file;
-    free(file);
-    return NULL;
+    return is_file(file) ? file : NULL;
 }
 
 /* The file of a scene; NULL, with a message, when there is none. */
@@ -211,10 +193,7 @@ static bool is_one_of(const list *l, const char *text, size_t length) {
 }
 
 static bool is_within(const char *given, const char *text, size_t length) {
-    char *part = text_print("%.*s", (int)length, text);
-    bool found = given && strstr(given, part);
-    free(part);
-    return found;
+    return given && strstr(given, text_print("%.*s", (int)length, text));
 }
 
 /* The option that was given that text. */
@@ -295,9 +274,7 @@ static int assign(nevh_scene *scene, const options *o, const char *setting) {
 
 bool outcome_named(const char *text) {
     char *name = text_print("%.*s", (int)strcspn(text, " ("), text);
-    bool found = nevh_outcome_find(name) >= 0;
-    free(name);
-    return found;
+    return nevh_outcome_find(name) >= 0;
 }
 
 /* Takes --observable: a formula along the orbit or, of commands that take these, an
@@ -353,9 +330,7 @@ static nevh_scene *read_switched(const char *file, const options *o) {
     for (size_t i = 0; i < o->settings.count; i++)
         if (strchr("+-", o->settings.item[i][0]))
             effects[how.n_effects++] = o->settings.item[i];
-    nevh_scene *scene = nevh_scene_read_with(file, &how);
-    free(effects);
-    return scene;
+    return nevh_scene_read_with(file, &how);
 }
 
 int scene_open_named(nevh_scene **scene, const char *name, const options *o) {
@@ -366,7 +341,6 @@ int scene_open_named(nevh_scene **scene, const char *name, const options *o) {
     *scene = read_switched(file, o);
     bool good =
         *scene && !outputs_check(o, *scene, file) && !apply_options(*scene, o);
-    free(file);
     if (good)
         return TOOL_OK;
     if (!*scene)

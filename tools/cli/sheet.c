@@ -18,7 +18,6 @@ static void add_choice(list *words, const char *option, unsigned choice) {
     list those = {0};
     list_split_at(&those, option_find(option)->words, '|');
     add(words, option, those.item[choice]);
-    list_free(&those);
 }
 
 static void set_environment(void) {
@@ -30,27 +29,18 @@ static void set_environment(void) {
     setenv("PYTHONDONTWRITEBYTECODE", "1", 0);
     if (library)
         setenv("NEVH_LIBRARY", library, 0);
-    char *program = realpath("/proc/self/exe", NULL);
+    char *program = text_adopt(realpath("/proc/self/exe", NULL));
     if (program)
         setenv("NEVH_COMMAND", program, 0);
-    free(program);
-    free(path);
-    free(library);
-    free(package);
 }
 
 /* Becomes Python; comes back where there is none. */
 static int become(const list *words) {
-    char **argv = calloc(words->count + 1, sizeof *argv);
-    if (!argv)
-        return tool_refuse("out of memory");
-    for (size_t i = 0; i < words->count; i++)
-        argv[i] = words->item[i];
+    char **argv = tool_allocate(words->count + 1, sizeof *argv);
+    memcpy(argv, words->item, words->count * sizeof *argv);
     execvp(argv[0], argv);
-    int error = errno;
-    free(argv);
     return tool_refuse(
-        error == ENOENT
+        errno == ENOENT
             ? "nevh sheet and nevh mark need Python 3.7 or newer, and there is "
               "no %s here; install it, or set PYTHON to its name"
             : "%s does not run",
@@ -76,9 +66,7 @@ static int by_python(const options *o, const char *name) {
     if (o->sheet.answers)
         list_add(&words, "--answers");
     set_environment();
-    int status = become(&words);
-    list_free(&words);
-    return status;
+    return become(&words);
 }
 
 static int sheet(const options *o) {

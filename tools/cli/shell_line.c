@@ -1,7 +1,6 @@
 /* nevh: lines to be typed into a shell.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tool.h"
-#include <stdlib.h>
 #include <string.h>
 
 /* In single quotes, where a quote itself is '\''. */
@@ -21,9 +20,7 @@ static char *quoted(const char *word) {
 }
 
 char *shell_word(char *line, const char *word) {
-    char *quotes = quoted(word);
-    text_extend(&line, " %s", quotes);
-    free(quotes);
+    text_extend(&line, " %s", quoted(word));
     return line;
 }
 

@@ -11,17 +11,6 @@ table *table_new(void) {
     return tool_allocate(1, sizeof(table));
 }
 
-static void table_free(table *t) {
-    if (!t)
-        return;
-    list_free(&t->title);
-    list_free(&t->cell);
-    free(t->kind);
-    free(t->group);
-    free(t->key);
-    free(t);
-}
-
 void table_column(table *t, const char *title) {
     list_add(&t->title, title);
     t->key = tool_enlarge(t->key, t->title.count, sizeof *t->key);
@@ -59,7 +48,6 @@ void table_titles(table *t, const char *titles) {
     list_split(&each, titles);
     for (size_t i = 0; i < each.count; i++)
         table_column(t, each.item[i]);
-    list_free(&each);
 }
 
 void table_text(table *t, const char *text) {
@@ -259,7 +247,6 @@ static void print_panel(const table *t, const panel *p, FILE *f) {
         if (t->below)
             print_paragraph(text[columns - 1], 4, 6, f);
     }
-    free(text);
 }
 
 static size_t panel_width(const table *t, const panel *p) {
@@ -295,7 +282,6 @@ static void print_table(const table *t, FILE *f) {
         print_panel(t, &p, f);
         first = p.last;
     }
-    free(set);
 }
 
 /* Spreadsheets compute a text that begins so, unless an apostrophe is before it. */
@@ -338,7 +324,6 @@ static void print_csv(const table *t, FILE *f) {
         char *title = joined_title(t->title.item[j]);
         print_quoted(title, f);
         fputc(j + 1 < columns ? ',' : '\n', f);
-        free(title);
     }
     for (size_t i = 0; i < t->cell.count; i++) {
         print_quoted(t->cell.item[i], f);
@@ -399,7 +384,6 @@ static void print_rows(const table *t, FILE *f) {
         fputs(i % columns ? ", " : i ? ",\n    {" : "\n    {", f);
         char *title = joined_title(t->title.item[i % columns]);
         json_string(title, f);
-        free(title);
         fputs(": ", f);
         print_value(t, i, f);
         fputs((i + 1) % columns ? "" : "}", f);
@@ -457,10 +441,4 @@ void page_print(const page *p, const options *o, FILE *f) {
         if (!o->quiet)
             print_all_wrapped(&p->after, f);
     }
-}
-
-void page_free(page *p) {
-    list_free(&p->before);
-    list_free(&p->after);
-    table_free(p->table);
 }

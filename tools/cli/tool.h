@@ -17,12 +17,35 @@
 #include <nevh/scene.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <sys/types.h>
+
+/* memory.c: the command's memory is its own until the program ends, so that nobody
+   asks whose a text or a row is.  Where memory is out the program ends. */
+void *tool_allocate(size_t count, size_t size);        /* zeros */
+void *tool_enlarge(void *, size_t count, size_t size); /* as realloc */
+/* Frees sooner: what is made again at each step of something long.  NULL is allowed. */
+void tool_release(void *);
+void tool_release_all(void); /* for programs that run command after command */
+/* Text that the library or libc allocated; NULL stays NULL. */
+char *text_adopt(char *);
+/* A text that is written as a file is; nothing else is done with it until it is
+   closed. */
+typedef struct {
+    FILE *file;
+    char *text;
+    size_t size;
+} text_file;
+FILE *text_open(text_file *);
+char *text_close(text_file *);
+#ifdef NEVH_COMMAND
+#define free(memory) tool_release_or_nothing(memory) /* links nowhere */
+#endif
 
 /* Exit statuses. */
 enum { TOOL_OK, TOOL_FAILED, TOOL_USAGE, TOOL_STOPPED };
 
-/* words.c: texts and lists of them.  Where memory is out the program ends. */
+/* words.c: texts and lists of them. */
 typedef struct {
     char **item;
     size_t count;
@@ -35,9 +58,6 @@ void list_split_at(list *, const char *text, char mark);
 bool list_has(const list *, const char *text);
 char *list_joined(const list *);                     /* with commas */
 char *list_sentence(const list *, const char *last); /* "a, b or c" */
-void list_free(list *);
-void *tool_allocate(size_t count, size_t size);        /* zeros */
-void *tool_enlarge(void *, size_t count, size_t size); /* as realloc */
 /* Returns the pointer; NULL, as the library returns for exhausted memory, ends the
    program. */
 void *tool_owned(void *);
@@ -178,7 +198,6 @@ typedef struct {
     list before, after;
     table *table;
 } page;
-void page_free(page *);
 void json_string(const char *text, FILE *);
 
 /* sample.c */
@@ -311,16 +330,14 @@ int command_takes_known(const command *);
    assignment to a parameter or of a start, in the order given.
    returns  TOOL_OK or TOOL_USAGE, the message being printed */
 int options_read(options *, int argc, char **argv);
-/* shell_line.c: a line for a shell, "  nevh COMMAND SCENE" and the settings given;
-   to be freed, unless it is made longer.  A word that a shell would change is
-   quoted. */
+/* shell_line.c: a line for a shell, "  nevh COMMAND SCENE" and the settings given.  A
+   word that a shell would change is quoted. */
 char *shell_line(const options *, const char *run, const char *scene);
 char *shell_word(char *line, const char *word);
 char *shell_option(char *line, const char *name, const char *value);
 char *shell_number(char *line, const char *name, double value);
 /* Notes the settings of --set and --start, a line each. */
 void settings_notes(const options *, list *notes);
-void options_free(options *);
 
 /* output.c: a file that is there when it is whole, or stdout. */
 typedef struct {
@@ -375,8 +392,7 @@ void html_text(FILE *, const char *);
    nevh sweep was made from. */
 #define STATE_ENDING      ".state"
 #define ARRAY_TEXT_ENDING ".txt"
-/* FILE.npy, or for task I of N (0: there are no tasks) FILE.I-of-N.npy; to be
-   freed. */
+/* FILE.npy, or for task I of N (0: there are no tasks) FILE.I-of-N.npy. */
 char *output_part(const char *file, uint64_t task, uint64_t tasks);
 /* Checks that no option writes over the file of a scene, its C code, measured
    points, or the output of another option, whatever their names. */
@@ -400,14 +416,14 @@ int scenes_missing(void);
 void scenes_installed(list *names, list *files);
 /* The file of an installed scene, or of "hard/NAME"; NULL when there is none. */
 char *scene_file(const char *name);
-/* The file of --data: here, or beside the installed scenes; to be freed. */
+/* The file of --data: here, or beside the installed scenes. */
 char *data_file(const char *name);
 
 /* The live page without a scene, beside this program or where it was configured
-   to be; to be freed.  Whether it is there is not known. */
+   to be.  Whether it is there is not known. */
 char *page_kit(void);
 /* The folder of the package for Python, and the library where it stands beside
-   this program, or NULL; to be freed. */
+   this program, or NULL. */
 char *package_folder(void);
 char *library_file(void);
 

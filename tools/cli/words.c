@@ -4,38 +4,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
-
-void *tool_owned(void *memory) {
-    if (!memory) {
-        fputs("nevh: out of memory\n", stderr);
-        exit(TOOL_FAILED);
-    }
-    return memory;
-}
-
-int tool_status(int status) {
-    if (status == NEVH_ENOMEM)
-        tool_owned(NULL);
-    return status;
-}
-
-double tool_number(double number) {
-    if (isnan(number) && errno == ENOMEM)
-        tool_owned(NULL);
-    return number;
-}
-
-void *tool_allocate(size_t count, size_t size) {
-    return tool_owned(calloc(count ? count : 1, size));
-}
-
-void *tool_enlarge(void *memory, size_t count, size_t size) {
-    if (size && count > SIZE_MAX / size)
-        return tool_owned(NULL);
-    return tool_owned(realloc(memory, count * size));
-}
 
 static char *print(const char *format, va_list arguments) {
     va_list again;
@@ -60,10 +29,7 @@ void text_extend(char **text, const char *format, ...) {
     va_start(arguments, format);
     char *more = print(format, arguments);
     va_end(arguments);
-    char *longer = text_print("%s%s", *text ? *text : "", more);
-    free(*text);
-    free(more);
-    *text = longer;
+    *text = text_print("%s%s", *text ? *text : "", more);
 }
 
 static void take(list *l, char *text) {
@@ -128,13 +94,6 @@ char *list_sentence(const list *l, const char *last) {
     return text;
 }
 
-void list_free(list *l) {
-    for (size_t i = 0; i < l->count; i++)
-        free(l->item[i]);
-    free(l->item);
-    *l = (list){0};
-}
-
 static size_t least(size_t a, size_t b) {
     return a < b ? a : b;
 }
@@ -153,9 +112,7 @@ static size_t distance(const char *a, const char *b) {
             edits[j + 1] = least(replaced, least(last, edits[j]) + 1);
         }
     }
-    size_t result = edits[width];
-    free(edits);
-    return result;
+    return edits[width];
 }
 
 const char *list_closest(const list *l, const char *name) {
@@ -191,10 +148,8 @@ int tool_unknown(const char *kind, const char *name, const list *known) {
                            closest);
     if (known->count > FEW || known->count == 0)
         return tool_refuse("unknown %s %s", kind, name);
-    char *all = list_joined(known);
-    tool_refuse("unknown %s %s; there are %s", kind, name, all);
-    free(all);
-    return TOOL_USAGE;
+    return tool_refuse("unknown %s %s; there are %s", kind, name,
+                       list_joined(known));
 }
 
 void help_print(FILE *f, int used, int column, const char *text) {

@@ -5,7 +5,6 @@
 #include "experiment/trial_run.h"
 #include "plot/order_plot.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -29,7 +28,6 @@ static void time_rows(const plan *p, row_list *r) {
         if (r->row[i].ran)
             ran[count++] = &r->row[i];
     rows_time(p, ran, count, p->repeats ? p->repeats : ROUNDS, p->repeats > 0);
-    free(ran);
 }
 
 static void settle_rows(const plan *p, row_list *r) {
@@ -37,7 +35,6 @@ static void settle_rows(const plan *p, row_list *r) {
     for (size_t i = 0; i < r->count; i++)
         all[i] = &r->row[i];
     rows_choose_native(p, all, r->count, false);
-    free(all);
 }
 
 static void run_rows(const plan *p, row_list *r, bool quiet) {
@@ -99,7 +96,6 @@ static void show_name(table *t, const row *r) {
                      ? text_print("%s %.0e", r->integrator, r->tolerance)
                      : text_print("%s", r->integrator);
     table_text(t, name);
-    free(name);
 }
 
 static void show_row(table *t, const plan *p, const row *r) {
@@ -148,7 +144,6 @@ static table *shown(const plan *p, const row_list *r) {
             table_group(t);
         show_row(t, p, &r->row[i]);
     }
-    free(dt);
     return t;
 }
 
@@ -205,7 +200,6 @@ static void judge(const plan *p, const row_list *r, bool is_table,
         advise(p, r, words);
     time_words(p, r->row, r->count, words);
     passed_words(p, r->row, r->count, words);
-    free(ends);
 }
 
 static page make_page(const options *o, const plan *p, const row_list *r) {
@@ -256,7 +250,6 @@ static int compare_rows(const options *o, plan *p, row_list *r) {
     bool first = plot_goes_first(o);
     int drawn = first ? draw_rows(o, p, r) : TOOL_OK;
     page_print(&result, o, out.stream);
-    page_free(&result);
     for (size_t i = 0; i < r->count; i++)
         if (r->row[i].failed)
             status = row_fails(p, &r->row[i]);
@@ -277,7 +270,6 @@ static int compare_plan(const options *o, plan *p) {
         plan_energies(p);
     if (!status)
         status = compare_rows(o, p, &r);
-    rows_free(&r);
     return status;
 }
 

@@ -3,7 +3,6 @@
 #include "orbit/orbit.h"
 #include "plot/energy_plot.h"
 #include <math.h>
-#include <stdlib.h>
 
 enum { MOST_PANELS = 9 };
 
@@ -29,7 +28,6 @@ static void begin_panel(plot **to, const plan *p, const row *r) {
         energy_plot_panel(*to, p, text);
     else
         *to = energy_plot_new(p, p->title, text);
-    free(text);
 }
 
 static void draw_row(plot *to, const plan *p, double turns, const row *r) {
@@ -37,7 +35,6 @@ static void draw_row(plot *to, const plan *p, double turns, const row *r) {
                      ? text_print("%s, %g", r->integrator, r->tolerance)
                      : text_print("%s", r->integrator);
     energy_plot_add(to, p, turns, name, r->integrator, r->errors);
-    free(name);
 }
 
 /* Adds to the words the rows that failed, which have no curve. */
@@ -55,7 +52,6 @@ static void note_failed(const plan *p, const row rows[], size_t count,
                               : "failed: ",
                     r->integrator, step);
         any = true;
-        free(step);
     }
 }
 
@@ -99,8 +95,5 @@ int compare_plot(const options *o, const plan *p, const row rows[],
     char *more = energy_plot_words(p, turns);
     note_failed(p, rows, count, &more);
     plot_note_run(to, &shown, NULL, more);
-    free(more);
-    int status = plot_write(to, o);
-    plot_free(to);
-    return status;
+    return plot_write(to, o);
 }

@@ -3,7 +3,6 @@
 #include "verdict_private.h"
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Its own run is calm: what the longer one does has a sentence of its own. */
@@ -36,8 +35,6 @@ static void common_words(const row rows[], size_t count, nevh_verdict verdict,
     char *text = list_joined(&names);
     if (names.count)
         list_print(words, "%s %s", text, names.count == 1 ? one : many);
-    list_free(&names);
-    free(text);
 }
 
 static bool same_place(const row *a, const row *b) {
@@ -96,10 +93,7 @@ static char *step_of(const plan *p, const row *r) {
 char *verdict_subject(const plan *p, const row rows[], size_t count,
                       const row *r) {
     char *name = name_of(rows, count, r), *place = step_of(p, r);
-    char *text = text_print("%s at %s", name, place);
-    free(name);
-    free(place);
-    return text;
+    return text_print("%s at %s", name, place);
 }
 
 /* When the drifting error passes, or would pass, the bounded one. */
@@ -161,9 +155,6 @@ static void line_words(const plan *p, const row rows[], size_t count,
                    drifts, p->balance ? " against the balance" : "",
                    100 * fabs(e->drift) * span, slope);
     crossing_words(p, r, bounded_beside(rows, count, r), text, words);
-    free(drifts);
-    free(slope);
-    free(text);
 }
 
 static void later_line_words(const plan *p, const row *r, const char *subject,
@@ -175,9 +166,6 @@ static void later_line_words(const plan *p, const row *r, const char *subject,
                "until t = %s it %s%s (%s).",
                subject, r->energy.max, until, drifts,
                p->balance ? " against the balance" : "", slope);
-    free(drifts);
-    free(slope);
-    free(until);
 }
 
 static void drift_words(const plan *p, const row rows[], size_t count,
@@ -195,7 +183,6 @@ static void drift_words(const plan *p, const row rows[], size_t count,
             subject, r->energy.final < 0 ? "loses" : "gains",
             p->balance ? " against the balance" : "",
             100 * fabs(r->energy.final));
-    free(subject);
 }
 
 /* Errors that do not grow, or that rounding hides, but are no small part of the
@@ -218,8 +205,6 @@ static void large_error_words(const plan *p, const row rows[], size_t count,
                              "%.2g times the energy scale: take a shorter "
                              "step.",
                    name, place, r->energy.max);
-        free(name);
-        free(place);
     }
 }
 
@@ -252,9 +237,6 @@ static void bounded_words(const plan *p, const row rows[], size_t count,
                             "over the run%s.",
                             also);
     common_words(rows, count, NEVH_BOUNDED, one, many, words);
-    free(also);
-    free(one);
-    free(many);
 }
 
 /* Names, for an integrator with several verdicts, the steps that have that one. */
@@ -273,13 +255,10 @@ static void partial_words(const row rows[], size_t count,
         char *place = place_of(rows, count, &rows[k]);
         if (!list_has(&places, place))
             list_add(&places, place);
-        free(place);
     }
     char *joined = list_joined(&places);
     if (places.count)
         list_print(words, "%s %s at %s.", integrator, text[verdict], joined);
-    list_free(&places);
-    free(joined);
 }
 
 /* Row i, where it is the first of its integrator, whose rows differ. */
@@ -334,7 +313,6 @@ static void warn_of_changes(const row rows[], size_t count, list *words) {
                    "Warning: a smaller dt changes the verdict%s.  Trust a "
                    "verdict that a still smaller dt confirms.",
                    text);
-    free(text);
 }
 
 void verdict_words(const plan *p, const row rows[], size_t count, list *words) {

@@ -3,7 +3,6 @@
 #include "verdict_private.h"
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* The end of the run that a row's verdict is from. */
@@ -23,8 +22,6 @@ void verdict_later_words(const plan *p, const row rows[], size_t count,
                "grows past every energy the system started with when the run "
                "is continued until t = %s.",
                subject, r->energy.max, until);
-    free(subject);
-    free(until);
 }
 
 /* Two digits upwards. */
@@ -54,7 +51,6 @@ static void open_run_words(const plan *p, const row *r, const char *subject,
             "run until t = %g%s may decide.",
             subject, r->followed > 0 ? ", also when continued until t = " : "",
             r->followed > 0 ? until : "", decides, p->unit);
-    free(until);
 }
 
 /* The error grows because the motion does. */
@@ -114,8 +110,6 @@ void verdict_open_words(const plan *p, const row rows[], size_t count,
             r->integrator);
     else
         open_run_words(p, r, subject, words);
-    free(subject);
-    free(until);
 }
 
 /* To a motion of far larger energies, in the longer run. */
@@ -153,8 +147,6 @@ void verdict_larger_words(const plan *p, const row rows[], size_t count,
                        ? ", above all energies of the motion, and level since"
                    : level ? ", level since"
                            : "");
-        free(subject);
-        free(until);
     }
 }
 
@@ -183,6 +175,4 @@ void verdict_followed_words(const plan *p, const row rows[], size_t count,
             span, p->unit, joined,
             names.count == 1 ? "its verdict is" : "their verdicts are",
             start + most * span, p->unit);
-    free(joined);
-    list_free(&names);
 }

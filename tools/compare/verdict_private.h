@@ -5,7 +5,7 @@
 
 #include "experiment/row.h"
 
-/* verdict.c: texts are to be freed. */
+/* verdict.c */
 bool verdict_is(const row *, nevh_verdict);
 /* "verlet at dt = 0.1", and the gradient where there are several. */
 char *verdict_subject(const plan *, const row rows[], size_t count,

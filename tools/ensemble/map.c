@@ -63,10 +63,7 @@ static int read_data(map *m, const plan *p, const options *o) {
     list names = {0};
     for (size_t k = 0; k <= m->varied; k++)
         list_add(&names, nevh_sweep_column(m->sweep, k));
-    int status =
-        o->fit.data ? measured_read_named(&m->data, p, o, &names) : TOOL_OK;
-    list_free(&names);
-    return status;
+    return o->fit.data ? measured_read_named(&m->data, p, o, &names) : TOOL_OK;
 }
 
 int map_new(map **made, const options *o, const plan *p, const nevh_sweep *s) {
@@ -90,14 +87,6 @@ int map_new(map **made, const options *o, const plan *p, const nevh_sweep *s) {
         m->values[i] = NAN;
     m->rms = NAN;
     return read_data(m, p, o);
-}
-
-void map_free(map *m) {
-    if (m) {
-        free(m->values);
-        measured_free(&m->data);
-    }
-    free(m);
 }
 
 void map_take(map *m, uint64_t member, nevh_member_status status,
@@ -147,7 +136,6 @@ static nevh_outcome_unit unit_of_column(const map *m, size_t column) {
     const char *name = nevh_sweep_column(m->sweep, column);
     char *word = text_print("%.*s", (int)strcspn(name, "("), name);
     int kind = column < m->varied ? -1 : nevh_outcome_find(word);
-    free(word);
     return kind < 0 ? NEVH_UNIT_NONE : nevh_outcomes()[kind]->unit;
 }
 
@@ -165,9 +153,7 @@ static char *label_of(const map *m, size_t column) {
                : unit == NEVH_UNIT_OF_FORMULA
                    ? text_print("%.*s", (int)strcspn(inner, ")") - 1, inner + 1)
                    : text_print("%s", name);
-    char *label = plot_label(m->plan, name, of);
-    free(of);
-    return label;
+    return plot_label(m->plan, name, of);
 }
 
 /* Two directions whose values are combined, each pair once, or one alone, whose
@@ -199,9 +185,6 @@ static bool find_directions(const map *m, direction found[2], size_t *count) {
     for (size_t k = 0; k < m->varied; k++)
         if (any && (k == pair[0] || k == pair[1]))
             found[k == pair[0] ? 0 : 1] = all[k];
-        else
-            free(all[k].value);
-    free(all);
     return any;
 }
 
@@ -264,15 +247,10 @@ static plot *draw_line(map *m, const direction *d) {
     }
     if (draw_measured(m, to, nevh_sweep_column(m->sweep, d->column),
                       nevh_sweep_column(m->sweep, m->varied), "measured")) {
-        plot_free(to);
         to = NULL;
     } else if (m->data.points) {
         take_rms(m, d, outcome);
     }
-    free(outcome);
-    free(order);
-    free(x);
-    free(y);
     return to;
 }
 
@@ -299,13 +277,8 @@ static plot *draw_map(map *m, const direction d[2]) {
     plot_span_y(to, low, high);
     if (draw_measured(m, to, nevh_sweep_column(m->sweep, d[0].column),
                       nevh_sweep_column(m->sweep, d[1].column), NULL)) {
-        plot_free(to);
         to = NULL;
     }
-    free(values);
-    free(x);
-    free(y);
-    free(z);
     return to;
 }
 
@@ -314,12 +287,10 @@ static int refuse_directions(const map *m) {
     for (size_t k = 0; k < m->varied; k++)
         text_extend(&names, "%s%s", k ? ", " : "",
                     nevh_sweep_column(m->sweep, k));
-    int status = tool_refuse(
+    return tool_refuse(
         "--picture draws an outcome over one direction, or two whose values "
         "are combined, as range(A, B, N) gives them: not over %s",
         names);
-    free(names);
-    return status;
 }
 
 int map_draw(map *m, const char *integrator) {
@@ -330,8 +301,6 @@ int map_draw(map *m, const char *integrator) {
     if (!find_directions(m, d, &count))
         return refuse_directions(m);
     plot *to = count == 2 ? draw_map(m, d) : draw_line(m, &d[0]);
-    for (size_t i = 0; i < count; i++)
-        free(d[i].value);
     if (!to)
         return TOOL_USAGE;
     char *scheme = plot_scheme(m->plan, integrator);
@@ -342,11 +311,7 @@ int map_draw(map *m, const char *integrator) {
                         : text_print("%zu orbits; rms of the residuals: %.3g",
                                      m->members, m->rms);
     plot_note_run(to, m->plan, scheme, more);
-    free(scheme);
-    free(more);
-    int status = m->missing == m->members
-                     ? tool_refuse("nothing to draw: no member has a value")
-                     : plot_write(to, &m->options);
-    plot_free(to);
-    return status;
+    return m->missing == m->members
+               ? tool_refuse("nothing to draw: no member has a value")
+               : plot_write(to, &m->options);
 }

@@ -10,7 +10,6 @@ typedef struct map map;
 /* Creates the picture of --picture; without it *made is NULL.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int map_new(map **made, const options *, const plan *, const nevh_sweep *);
-void map_free(map *); /* NULL is allowed */
 /* A member's values: what is varied, then outcomes; nothing for NULL. */
 void map_take(map *, uint64_t member, nevh_member_status,
               const double values[]);

@@ -3,7 +3,6 @@
 #include "members.h"
 #include <inttypes.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_MEMBERS = 10000, MOST_NAMED = 16 };
@@ -46,9 +45,8 @@ int members_check(const plan *p, const options *o) {
         size_t length = strcspn(text, "=");
         while (length && text[length - 1] == ' ')
             length--;
-        char *name = text_print("%.*s", (int)length, text);
-        bool varies = nevh_scene_varies(p->scene, name);
-        free(name);
+        bool varies =
+            nevh_scene_varies(p->scene, text_print("%.*s", (int)length, text));
         if (varies)
             return tool_refuse("--%s %s: [ensemble] or --vary gives it to each "
                                "orbit; --vary '%s' gives all the same",
@@ -78,13 +76,6 @@ int members_read(members *m, const plan *p) {
     memcpy(m->p, p->p, p->n * sizeof *m->p);
     m->count = 1;
     return TOOL_OK;
-}
-
-void members_free(members *m) {
-    free(m->number);
-    free(m->q);
-    free(m->p);
-    free(m->why);
 }
 
 int members_tell(const members *m, const plan *p) {

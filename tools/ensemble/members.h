@@ -18,12 +18,11 @@ typedef struct {
 int members_check(const plan *, const options *);
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int members_read(members *, const plan *);
-void members_free(members *);
 /* Reports members without a start: TOOL_FAILED if there are some. */
 int members_tell(const members *, const plan *);
 void members_note(const members *, list *notes);
 /* "start phi = 0.3": the first coordinate or momentum in which members differ, as a
-   key; to be freed.  NULL where they are one, or too many for a key. */
+   key.  NULL where they are one, or too many for a key. */
 char *members_start(const members *, const plan *, size_t i);
 /* Notes that points of a section lie on several surfaces of energy. */
 void members_note_energies(const members *, const plan *, list *notes);

@@ -50,7 +50,6 @@ static void measure(store *s, const char *name) {
     s->record = 8 + 8 * s->columns->count;
     s->bytes = tool_allocate(s->record, 1);
     pthread_mutex_init(&s->block.lock, NULL);
-    free(store_header(s));
 }
 
 /* As long as the whole file.  A file of a usual size takes all its space at once, so
@@ -69,7 +68,6 @@ static int init(store *s) {
     char *header = store_header(s);
     bool written = reserve(s) && write_at(s, header, s->header, 0);
     int wrong = errno;
-    free(header);
     if (written)
         return TOOL_OK;
     if (ftruncate(s->file, 0) != 0)
@@ -120,8 +118,6 @@ int store_range(const char *name, uint64_t *first, uint64_t *count) {
              sscanf(at, " members_here: %" SCNu64 " from %" SCNu64, count,
                     first) != 2)
         status = tool_refuse("%s is not what nevh sweep wrote", side);
-    free(text);
-    free(side);
     return status;
 }
 
@@ -149,14 +145,12 @@ static int check_side(const store *s) {
     uint64_t first, count;
     if (store_range(s->name, &first, &count))
         return TOOL_USAGE;
-    char *text = read_side(s->side);
-    int status = compare_settings(s, text + strlen(magic));
+    int status = compare_settings(s, read_side(s->side) + strlen(magic));
     if (!status && (first != s->first || count != s->count))
         status = tool_refuse("%s has members %" PRIu64 " ... %" PRIu64
                              ", not %" PRIu64 " ... %" PRIu64,
                              s->name, first, first + count - 1, s->first,
                              s->first + s->count - 1);
-    free(text);
     return status;
 }
 
@@ -168,8 +162,6 @@ static int check_file(store *s) {
     uint64_t size = same ? (uint64_t)found.st_size : 0;
     same = same && pread(s->file, there, s->header, 0) == (ssize_t)s->header &&
            memcmp(header, there, s->header) == 0;
-    free(header);
-    free(there);
     if (!same)
         return tool_refuse("%s is no file of this sweep: its header is another",
                            s->name);
@@ -221,7 +213,6 @@ static bool is_begun(int file, uint64_t header, size_t record, uint64_t count) {
         missing |= next > i + 1;
         i = next - 1;
     }
-    free(b.bytes);
     return done && missing;
 }
 
@@ -230,7 +221,6 @@ static int check_unfinished(const store *s, int file) {
     uint64_t first, count;
     char *text = read_side(s->side);
     bool ours = text && strncmp(text, magic, strlen(magic)) == 0;
-    free(text);
     struct stat found;
     if (!ours || fstat(file, &found) != 0 ||
         store_range(s->name, &first, &count))
@@ -339,7 +329,7 @@ static int add_reason(store *s, const nevh_sweep_result *r) {
                                        strerror(errno));
     if (file >= 0)
         close(file);
-    free(line);
+    tool_release(line);
     return status;
 }
 
@@ -407,7 +397,6 @@ static char *sorted(store *s, char *lines) {
     for (size_t i = 0; i < count; i++)
         if (i + 1 == count || all[i + 1].member != all[i].member)
             to += sprintf(to, "%s\n", all[i].line);
-    free(all);
     return text;
 }
 
@@ -422,11 +411,8 @@ int store_finish(store *s) {
     char *lines = text ? strstr(text, reasons_begin) : NULL;
     int status = TOOL_OK;
     if (lines) {
-        char *reasons = sorted(s, lines + strlen(reasons_begin));
-        status = write_side(s, reasons);
-        free(reasons);
+        status = write_side(s, sorted(s, lines + strlen(reasons_begin)));
     }
-    free(text);
     return !status && fsync(s->file) ? unwritten(s) : status;
 }
 
@@ -437,10 +423,6 @@ void store_close(store *s) {
     }
     if (s->name && s->file >= 0)
         close(s->file);
-    free(s->name);
-    free(s->side);
-    free(s->bytes);
-    free(s->block.bytes);
 }
 
 /* Shards. */
@@ -466,7 +448,6 @@ static int copy_reasons(const store *to, const store *from) {
     FILE *f = lines ? fopen(to->place, "ae") : NULL;
     bool written = f && fputs(lines + strlen(reasons_begin), f) >= 0;
     written = f && fclose(f) == 0 && written;
-    free(text);
     return written || !lines ? TOOL_OK
                              : tool_refuse("%s cannot be written: %s", to->side,
                                            strerror(errno));

@@ -67,7 +67,7 @@ int store_take(store *to, const char *shard, uint64_t first, uint64_t count);
 
 /* store_record.c: the header, records, and blocks of them. */
 enum { STORE_BEFORE_TEXT = 12 }; /* bytes of a header */
-/* The header, as long as s->header says, which is set; to be freed. */
+/* The header, as long as s->header says, which is set. */
 char *store_header(store *);
 void record_write(const store *, unsigned char record[],
                   const nevh_sweep_result *);

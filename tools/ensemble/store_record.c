@@ -7,7 +7,6 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -40,9 +39,7 @@ static char *python_text(const char *text) {
 char *store_header(store *s) {
     char *fields = text_print("%s", "('status', '|u1'), ('', '|V7')");
     for (size_t i = 0; i < s->columns->count; i++) {
-        char *name = python_text(s->columns->item[i]);
-        text_extend(&fields, ", (%s, '<f8')", name);
-        free(name);
+        text_extend(&fields, ", (%s, '<f8')", python_text(s->columns->item[i]));
     }
     char *text = text_print("{'descr': [%s], 'fortran_order': False, 'shape': "
                             "(%" PRIu64 ",), }",
@@ -57,8 +54,6 @@ char *store_header(store *s) {
     memset(all + STORE_BEFORE_TEXT, ' ', rest);
     memcpy(all + STORE_BEFORE_TEXT, text, length);
     all[s->header - 1] = '\n';
-    free(text);
-    free(fields);
     return all;
 }
 

@@ -213,8 +213,6 @@ static int report_failures(const sweep_job *j) {
                     (unsigned long long)nevh_sweep_members(j->sweep),
                     j->failed ? "the first that is not done, " : "the first, ",
                     why);
-    free(known);
-    free(why);
     sweep_tell_undefined(j);
     return j->failed || j->startless ? TOOL_FAILED : TOOL_OK;
 }
@@ -301,11 +299,7 @@ static int sweep(const options *o) {
         note(&j);
         status = is_array(o) ? sweep_array(&j) : run(&j);
     }
-    map_free(j.map);
     nevh_sweep_free(j.sweep);
-    list_free(&j.notes);
-    list_free(&j.columns);
-    free(j.why);
     plan_free(&j.plan);
     ranks_end(&j.ranks);
     return status;

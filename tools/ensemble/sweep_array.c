@@ -8,7 +8,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <signal.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -39,7 +38,7 @@ static char *describe(const sweep_job *j) {
     const plan *p = &j->plan;
     const options *o = j->options;
     char *columns = list_joined(&j->columns);
-    char *all = text_print(
+    return text_print(
         "nevh: %s\nscene: %016llx\nmembers: %llu\ncolumns: %s\n"
         "integrator: %s\ndt: %.17g\nt_end: %.17g\ngradient: %s\n"
         "gradient_step: %.17g\ntolerance: %.17g\nportable: %s\n",
@@ -48,8 +47,6 @@ static char *describe(const sweep_job *j) {
         j->integrator, o->dt.count ? p->dt[0] : 0, o->t_end ? p->t_end : 0,
         p->gradients.item[0], o->gradient_step,
         p->tolerances ? p->tolerance[0] : 0, p->portable ? "yes" : "no");
-    free(columns);
-    return all;
 }
 
 /* For who reads the side file. */
@@ -57,12 +54,11 @@ static char *describe_file(const sweep_job *j) {
     char *all = text_print("%s", "");
     for (size_t i = 0; i < j->notes.count; i++)
         text_extend(&all, "# %s\n", j->notes.item[i]);
-    char *scene = tool_owned(nevh_scene_write(j->plan.scene, NULL));
+    char *scene = text_adopt(tool_owned(nevh_scene_write(j->plan.scene, NULL)));
     text_extend(&all,
                 "# status: 0 not yet run, 1 done, 2 failed, 3 no start\n\n"
                 "[scene as run]\n%s",
                 scene);
-    free(scene);
     return all;
 }
 
@@ -95,7 +91,6 @@ static void count_members(sweep_job *j, bool look, uint64_t have[4]) {
             sweep_check_values(j, values);
     }
     have[NEVH_MEMBER_MISSING] += s->count - looked;
-    free(values);
 }
 
 /* A member is not saved before its end: calls that are shorter than one repeat the
@@ -152,7 +147,6 @@ static int run_array(sweep_job *j) {
                                          j->store.count, is_wanted, keep, j);
     signals_catch(NULL, NULL);
     under_way = NULL;
-    free(late);
     status = sweep_end(j, status);
     if (shared)
         status = ranks_close(&j->ranks, status);
@@ -203,8 +197,6 @@ static uint64_t find_parts(const char *file) {
                     folder, before);
     else if (!found)
         tool_refuse("there is nothing to join: no %s%sN.npy", folder, before);
-    free(folder);
-    free(before);
     return several ? 0 : found;
 }
 
@@ -222,7 +214,6 @@ static int join(sweep_job *j) {
         char *name = output_part(file, i, parts);
         take_part(j, i, parts, &first, &members);
         status = store_take(&j->store, name, first, members);
-        free(name);
     }
     if (!status)
         status = store_finish(&j->store);
@@ -241,7 +232,6 @@ static int draw_array(sweep_job *j, int status) {
         if (found != NEVH_MEMBER_MISSING)
             map_take(j->map, s->first + i, found, values);
     }
-    free(values);
     return map_draw(j->map, j->integrator) ? TOOL_USAGE : status;
 }
 
@@ -263,7 +253,6 @@ static int run_members(sweep_job *j) {
     status = ranks_open(&j->ranks, s, name, o->resume, j->threads);
     if (!status)
         status = run_array(j);
-    free(name);
     return status;
 }
 
@@ -279,8 +268,6 @@ int sweep_array(sweep_job *j) {
     if (j->map && !j->ranks.rank && status != TOOL_USAGE && !ends)
         status = draw_array(j, status);
     store_close(&j->store);
-    free(settings);
-    free(story);
     if (ends && j->ranks.count == 1)
         signal_end(interrupted);
     return status;

@@ -4,7 +4,6 @@
 #include "row.h"
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { MOST_STEPS = 2000, MOST_GRADIENTS = 1000000 };
 
@@ -29,8 +28,7 @@ static nevh_stepper *stepper_of(const plan *p) {
     return plan_stepper(p, "dop853");
 }
 
-/* Their largest changes on an orbit by dop853; NULL: it fails, or costs too much.  To
-   be freed. */
+/* Their largest changes on an orbit by dop853; NULL: it fails, or costs too much. */
 static double *changes(const plan *p, double t_end, double tolerance) {
     plan trial = *p;
     double stopped;
@@ -46,10 +44,8 @@ static double *changes(const plan *p, double t_end, double tolerance) {
                 !plan_run(&trial, s, p->dt[0], observers, 2, &stopped);
     double *change = invariants_result(kept);
     nevh_stepper_free(s);
-    if (!good) {
-        free(change);
+    if (!good)
         change = NULL;
-    }
     return change;
 }
 
@@ -75,7 +71,6 @@ static bool measure(const plan *p, size_t count, double size[]) {
             size[i] = isfinite(now[i]) ? fmax(size[i], fabs(now[i])) : size[i];
     }
     nevh_probe_free(probe);
-    free(state);
     return good;
 }
 
@@ -97,9 +92,6 @@ static bool changed_notes(const plan *p, list *notes, bool *followed) {
                        "steps are 10000 times smaller.",
                        nevh_scene_shown_name(p->scene, NEVH_INVARIANTS, i),
                        one[i], t_end, p->unit, two[i]);
-    free(size);
-    free(one);
-    free(two);
     return known;
 }
 

@@ -3,7 +3,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "row.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* The cost of the first grows with n, its memory with n^2. */
@@ -45,11 +44,7 @@ int invariants_observe(void *data, size_t step, double t, const double q[],
 }
 
 double *invariants_result(invariants *v) {
-    double *change = v->change;
-    free(v->first);
-    free(v->now);
-    free(v);
-    return change;
+    return v->change;
 }
 
 /* A part of the ranges of the reference, where there is one. */
@@ -74,7 +69,6 @@ void diagnose_row(const plan *p, row *r) {
     nevh_reversal_defect(s, t, r->dt, steps, p->q, p->p, scale,
                          &r->reversal_error);
     row_stepper_keep(p, r, false, s);
-    free(scale);
 }
 
 static const char *const names[] = {
@@ -94,7 +88,6 @@ void diagnostics_columns(table *t, const plan *p, bool is_table) {
         char *title =
             text_print(is_table ? "change of\n%s" : "change_%s", name);
         table_column(t, title);
-        free(title);
     }
 }
 

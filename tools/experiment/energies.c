@@ -99,18 +99,7 @@ void plan_energies(plan *p) {
 void energies_free(energies *s) {
     if (!s)
         return;
-    for (size_t i = 0; i < s->effects + s->bodies; i++)
-        free(s->name[i]);
-    free(s->name);
     nevh_field_free(s->field);
-    free(s->effect);
-    free(s->group);
-    free(s->every);
-    free(s->now);
-    free(s->then);
-    free(s->sum);
-    free(s->size);
-    free(s);
 }
 
 void energies_begin(energies *s) {
@@ -162,10 +151,9 @@ static size_t worst(const double error[], size_t first, size_t end) {
 void energies_columns(table *t, const plan *p, bool is_table) {
     const energies *s = p->energies;
     for (size_t i = 0; s && i < s->effects; i++) {
-        char *title = text_print(is_table ? "energy of\n%s" : "energy_error_%s",
-                                 s->name[i]);
-        table_column(t, title);
-        free(title);
+        table_column(t,
+                     text_print(is_table ? "energy of\n%s" : "energy_error_%s",
+                                s->name[i]));
     }
     if (s && s->bodies) {
         table_column(t, is_table ? "energy of\na body" : "body_energy_error");
@@ -222,7 +210,5 @@ void energies_words(const plan *p, const row rows[], size_t count,
                                 rows[i].dt, unseen);
         if (!list_has(words, text)) /* another gradient may find the same */
             list_add(words, text);
-        free(text);
-        free(unseen);
     }
 }

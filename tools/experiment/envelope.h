@@ -15,7 +15,7 @@ typedef struct envelope {
     } part[ENVELOPE_PARTS];
 } envelope;
 
-envelope *envelope_new(double begin, double end); /* to be freed with free */
+envelope *envelope_new(double begin, double end);
 
 /* A nevh_observe_fn: adds the energy error that `energy`, an observer called
    before, has just found. */

@@ -2,8 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "row.h"
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* The work of an implicit step depends on its length, which is found by pilots of
    so many steps. */
@@ -28,7 +26,6 @@ static double work_of_step(const plan *p, const row *r, double dt) {
     nevh_counts after = nevh_stepper_counts(s);
     double taken = (double)nevh_stepper_taken(s);
     row_stepper_keep(p, r, false, s);
-    free(q);
     return (status && !end.reached) || taken == 0
                ? NAN
                : (double)(after.gradients - before.gradients) / taken;

@@ -4,8 +4,6 @@
 #include <float.h>
 #include <nevh/sweep.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* As state errors are: so many times, not on one phase of every period. */
 enum { TIMES = 1024 };
@@ -136,7 +134,6 @@ int plan_observe(plan *p, const char *formula) {
             p->observable_error =
                 fmax(p->observable_error, own_error(p, t, state));
     }
-    free(state);
     double size = fmax(fabs(low), fabs(high));
     if (isfinite(none) || !isfinite(size))
         return no_value(p, none);

@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plan.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,9 +20,7 @@ const nevh_integrator *plan_scheme(const plan *p, const char *name,
     if (plus && !*transformed && !nevh_substeps_named(name))
         return NULL;
     char *own = text_print("%.*s", (int)strcspn(name, "+"), name);
-    const nevh_integrator *scheme = nevh_scene_integrator_named(p->scene, own);
-    free(own);
-    return scheme;
+    return nevh_scene_integrator_named(p->scene, own);
 }
 
 static void take_names(list *l, const list *given, const char *const scene[],
@@ -79,7 +76,6 @@ static int check_integrators(const plan *p) {
         else if (transformed && !nevh_scene_transform(p->scene))
             status = tool_refuse("%s: the scene has no transform", name);
     }
-    list_free(&names);
     return status;
 }
 
@@ -91,7 +87,6 @@ static int check_gradients(const plan *p) {
     for (size_t i = 0; !status && i < p->gradients.count; i++)
         if (!nevh_gradient_named(p->gradients.item[i]))
             status = tool_unknown("gradient", p->gradients.item[i], &names);
-    list_free(&names);
     return status;
 }
 
@@ -235,7 +230,6 @@ char *plan_title(const nevh_scene *scene, const char *name, const options *o) {
     for (size_t i = 0; i < o->settings.count; i++) {
         char *change = change_of(o->settings.item[i]);
         text_extend(&title, "%s%s", changes++ ? ", " : ", but ", change);
-        free(change);
     }
     for (size_t i = 0; i < o->vary.count; i++) {
         const char *text = o->vary.item[i];
@@ -273,16 +267,6 @@ int plan_make(plan *p, const options *o) {
 }
 
 void plan_free(plan *p) {
-    list_free(&p->integrators);
-    list_free(&p->gradients);
-    free(p->title);
-    free(p->unit);
-    free(p->per_unit);
-    free(p->energy_unit);
-    free(p->given_dt);
-    free(p->at);
-    free(p->q);
-    free(p->p);
     nevh_timing_free(p->timing);
     nevh_timing_free(p->jumps);
     plan_forget_reference(p);
@@ -384,9 +368,7 @@ static char *effects_that_are(const nevh_system *s, bool on) {
         if (nevh_system_effect_on(s, name) == on)
             list_add(&names, name);
     }
-    char *text = list_joined(&names);
-    list_free(&names);
-    return text;
+    return list_joined(&names);
 }
 
 char *plan_structure(const plan *p) {
@@ -410,8 +392,6 @@ static void note_effects(const plan *p, list *notes) {
                *off ? "effects on: %s    off: %s (never evaluated)"
                     : "effects on: %s",
                on, off);
-    free(on);
-    free(off);
 }
 
 void plan_notes(const plan *p, list *notes) {
@@ -424,5 +404,4 @@ void plan_notes(const plan *p, list *notes) {
                                           : "t = %g ... %g%s",
                p->run->t_start, p->t_end, p->unit,
                nevh_scene_stop_text(p->scene));
-    free(structure);
 }

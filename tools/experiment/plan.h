@@ -53,7 +53,7 @@ typedef struct {
     bool error_bounds;       /* rows have one */
     stepper_cache *steppers; /* of steppers */
 } plan;
-/* The scene's own title, else its name, and what options change; to be freed. */
+/* The scene's own title, else its name, and what options change. */
 char *plan_title(const nevh_scene *, const char *name, const options *);
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int plan_make(plan *, const options *);
@@ -64,7 +64,7 @@ void plan_forget_reference(plan *);
 nevh_field *plan_values(const plan *);
 double plan_longest_dt(const plan *);  /* 0: no dt is given */
 double plan_shortest_dt(const plan *); /* the same */
-/* A copy of the start: coordinates, then momenta; to be freed. */
+/* A copy of the start: coordinates, then momenta. */
 double *plan_state(const plan *);
 nevh_options plan_options(const plan *, const char *gradient);
 /* True if the effects that are on are all in A, whose flow is exact. */
@@ -116,16 +116,16 @@ double plan_drive(const plan *, const char **effect);
    known, as nevh_solution_ends has it.
    cost  a second at most */
 double plan_ends(const plan *);
-/* In words, to be freed; NULL: it does not, or is not known to. */
+/* In words; NULL: it does not, or is not known to. */
 char *ends_text(const plan *, double ends);
 /* Refuses a plan whose solution ends before it does: TOOL_FAILED. */
 int plan_refuse_end(const plan *);
-/* Why a run failed: its message, or that the solution ends; to be freed. */
+/* Why a run failed: its message, or that the solution ends. */
 char *plan_why(const plan *, const char *message);
 /* Likewise of a member of the ensemble, where it starts elsewhere alone. */
 char *member_why(const plan *, uint64_t member, const char *message);
 /* The fault of a run that ended well, but whose energy changes by a good part, or
-   that passes a pole: that, or that the solution ends; to be freed, NULL: none.
+   that passes a pole: that, or that the solution ends; NULL: none.
    watch   the energy observed in that run */
 char *plan_doubts(const plan *, const nevh_energy *watch, int status);
 nevh_energy *plan_watch(const plan *);

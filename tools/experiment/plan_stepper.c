@@ -52,7 +52,6 @@ void plan_why_report(const char *why) {
     if (!*why || (reported && strcmp(reported, why) == 0))
         return;
     fprintf(stderr, "nevh: steps are not compiled: %s\n", why);
-    free(reported);
     reported = text_print("%s", why);
 }
 

@@ -28,7 +28,6 @@ static void unstable_since(const plan *p, row *r) {
     /* Errors are asked for after every step, which costs more than a step may. */
     plan_run(p, s, r->step, &(nevh_observer){energy_limit_observe, &e, 1}, 1,
              &stopped);
-    free(r->status);
     r->status = e.passed ? text_print("unstable: since t = %.9g", e.t)
                          : text_print("unstable: after t = %.9g", p->t_end);
     nevh_energy_free(e.energy);
@@ -203,7 +202,6 @@ static void set_status(const plan *p, row *r, int status, const char *why,
     r->status =
         status ? text_print("failed: %s (after t = %.9g)", ends ? ends : why, t)
                : text_print("ok");
-    free(ends);
 }
 
 /* Results of the observers, which go. */

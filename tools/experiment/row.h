@@ -60,7 +60,6 @@ typedef struct {
     size_t count;
 } row_list;
 row_list rows_of(const plan *);
-void rows_free(row_list *);
 /* Creates the observer of the energy of a row's run. */
 nevh_energy *row_energy(const plan *, const row *, const nevh_stepper *);
 /* follow.c: where the run leaves the verdict open, from a longer one, as far as
@@ -159,8 +158,8 @@ double *energies_result(const energies *);
 void energies_columns(table *, const plan *, bool is_table);
 void energies_put(table *, const plan *, const row *, bool is_table);
 void energies_notes(const plan *, list *notes);
-/* A sentence on the worst of them where the total energy does not show it, to
-   be freed; NULL: there is none. */
+/* A sentence on the worst of them where the total energy does not show it;
+   NULL: there is none. */
 char *energies_unseen(const plan *, const row *);
 void energies_words(const plan *, const row rows[], size_t count, list *words);
 

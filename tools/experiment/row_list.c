@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "row.h"
 #include <math.h>
-#include <stdlib.h>
 
 static void add_row(const plan *p, row_list *r, size_t gradient,
                     const char *name, double dt, double tolerance) {
@@ -48,14 +47,4 @@ row_list rows_of(const plan *p) {
         add_adaptive(p, &r, g);
     }
     return r;
-}
-
-void rows_free(row_list *r) {
-    for (size_t i = 0; i < r->count; i++) {
-        free(r->row[i].status);
-        free(r->row[i].changes);
-        free(r->row[i].energies);
-        free(r->row[i].errors);
-    }
-    free(r->row);
 }

@@ -3,7 +3,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "row.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Above a bound of rounding that walks of four standard deviations keep. */
@@ -62,7 +61,6 @@ void observe_orders(row rows[], size_t count) {
                                    orders_agree(slope[i], after)))
             rows[i].observed_order = slope[i];
     }
-    free(slope);
 }
 
 static void note_gradients(const plan *p, list *notes) {
@@ -179,11 +177,6 @@ void native_notes(const plan *p, const row rows[], size_t count, list *notes) {
                    in_part);
     else if (p->native == NEVH_NATIVE_ALWAYS)
         list_add(notes, "native: no steps are compiled");
-    list_free(&all);
-    list_free(&some);
-    list_free(&none);
-    free(names);
-    free(in_part);
 }
 
 void row_notes(const options *o, const plan *p, const row rows[], size_t count,

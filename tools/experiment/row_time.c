@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "row.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double part = 0.002; /* seconds, of a row that takes longer */
@@ -29,9 +28,6 @@ static stopwatch stopwatch_new(const plan *p, const row *r, size_t rounds) {
 
 static void stopwatch_free(stopwatch *w) {
     row_stepper_keep(w->plan, w->row, false, w->stepper);
-    free(w->q);
-    free(w->p);
-    free(w->seconds);
 }
 
 static int stop_after(void *data, size_t step, double t, const double q[],
@@ -113,5 +109,4 @@ void rows_time(const plan *p, row *const rows[], size_t count, size_t rounds,
         finish(&w[i], rows[i], rounds);
         stopwatch_free(&w[i]);
     }
-    free(w);
 }

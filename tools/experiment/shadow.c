@@ -87,8 +87,6 @@ static void broken_words(const row rows[], size_t count, list *words) {
                    "The shadow of H breaks down for %s: such steps are too "
                    "long for its series.",
                    text);
-    free(text);
-    list_free(&broken);
 }
 
 void shadow_words(const plan *p, const row rows[], size_t count, list *words) {

@@ -27,8 +27,8 @@ static double most(const plan *p) {
     return fmin(gradients, pairs / (n * n));
 }
 
-/* An orbit that keeps H but for a jump, which derivatives do not tell of; to be
-   freed, NULL: there is none. */
+/* An orbit that keeps H but for a jump, which derivatives do not tell of; NULL:
+   there is none. */
 static char *jump(const plan *p, const nevh_energy *energy, double before,
                   double t) {
     static const double sudden = 1e-6; /* of the energies met */
@@ -64,7 +64,6 @@ static char *first_jump(const plan *p) {
     }
     nevh_stepper_free(s);
     nevh_energy_free(energy);
-    free(z);
     return jumps;
 }
 
@@ -86,5 +85,4 @@ void smoothness_notes(const plan *p, list *notes) {
                    "order there, and differences that reach across have larger "
                    "errors than estimated",
                    why);
-    free(why);
 }

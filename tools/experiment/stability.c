@@ -80,7 +80,6 @@ char *stability_cause(const nevh_integrator *scheme, double limit, double dt,
     if (turn && (x <= limit))
         text_extend(&text, "%s%s%s steps make a turn: a resonance",
                     text ? "" : where, text ? "; " : ": ", turn);
-    free(where);
     return text;
 }
 
@@ -127,8 +126,6 @@ largest_rates stability_rates(const nevh_system *system,
     nevh_rates_free(fastest.rates);
     nevh_energy_free(e.energy);
     nevh_stepper_free(s);
-    free(q);
-    free(p);
     return fastest;
 }
 
@@ -167,15 +164,10 @@ static void cause_words(const row rows[], size_t count, char *causes[],
             strcmp(causes[i], cause) != 0)
             continue;
         list_add(&names, rows[i].integrator);
-        if (i > first)
-            free(causes[i]);
         causes[i] = NULL;
     }
-    char *joined = list_joined(&names);
-    list_print(words, "%s at dt = %.4g: %s.", joined, rows[first].dt, cause);
-    free(joined);
-    free(cause);
-    list_free(&names);
+    list_print(words, "%s at dt = %.4g: %s.", list_joined(&names),
+               rows[first].dt, cause);
 }
 
 void stability_words(const plan *p, const row rows[], size_t count,
@@ -188,5 +180,4 @@ void stability_words(const plan *p, const row rows[], size_t count,
     for (size_t i = 0; i < count; i++)
         if (causes[i])
             cause_words(rows, count, causes, i, words);
-    free(causes);
 }

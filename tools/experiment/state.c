@@ -37,7 +37,6 @@ make_reference(const plan *p, const nevh_integrator *scheme, double end) {
                                 .finest = !p->run->reference};
     nevh_reference *made =
         nevh_reference_with(p->system, &o, p->run->t_start, end, p->q, p->p);
-    free(kind);
     return tool_owned(made);
 }
 
@@ -66,7 +65,6 @@ int plan_reference(plan *p, double end) {
 
 void plan_forget_reference(plan *p) {
     nevh_reference_free(p->reference);
-    free(p->no_reference);
     p->reference = NULL;
     p->no_reference = NULL;
 }
@@ -194,6 +192,4 @@ void state_words(const plan *p, const row rows[], size_t count, list *words) {
                    names.count == 1 ? "phase" : "phases", text,
                    names.count == 1 ? "is" : "are");
     explain_cells(p, rows, count, words);
-    list_free(&names);
-    free(text);
 }

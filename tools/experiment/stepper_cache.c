@@ -27,7 +27,6 @@ stepper_cache *stepper_cache_new(void) {
 void stepper_cache_free(stepper_cache *s) {
     for (size_t i = 0; s && i < MOST; i++)
         nevh_stepper_free(s->places[i].stepper);
-    free(s);
 }
 
 static bool is_alike(const place *at, const row *r, bool balance) {
@@ -113,7 +112,6 @@ static void compile_all(const plan *p, row *const rows[], size_t count) {
     for (size_t i = 0; i < count; i++)
         if (all[i])
             row_stepper_keep(p, rows[i], false, all[i]);
-    free(all);
 }
 
 void rows_choose_native(const plan *p, row *const rows[], size_t count,

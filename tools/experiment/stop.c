@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "row.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 int stop_observe(void *data, size_t step, double t, const double q[],
@@ -26,7 +25,6 @@ int plan_run_from(const plan *p, nevh_stepper *stepper, double q[], double m[],
     all[count] = (nevh_observer){stop_observe, &s, 1};
     int status = nevh_run_until(stepper, p->run->t_start, p->dt[0], p->t_end, q,
                                 m, all, count + nevh_scene_stops(p->scene));
-    free(all);
     *stopped = s.reached ? s.t : NAN;
     return s.reached ? NEVH_OK : status;
 }
@@ -36,10 +34,8 @@ int plan_run(const plan *p, nevh_stepper *stepper, double dt,
     plan by = *p;
     double *state = plan_state(p);
     by.dt = &dt;
-    int status = plan_run_from(&by, stepper, state, state + p->n, observers,
-                               count, stopped);
-    free(state);
-    return status;
+    return plan_run_from(&by, stepper, state, state + p->n, observers, count,
+                         stopped);
 }
 
 char *stop_words(const plan *p, double t) {
@@ -74,5 +70,4 @@ void stop_notes(const plan *p, const row rows[], size_t count, list *notes) {
                "%zu of %zu runs stopped where %s: t = %.9g (%s, dt = %.4g)%s",
                found, count, nevh_scene_stop_text(p->scene), first->stopped,
                first->integrator, first->dt, until);
-    free(until);
 }

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <nevh/sweep.h>
 #include <stdlib.h>
-#include <string.h>
 
 static size_t count_jumps(const nevh_timing *timing) {
     size_t count = 0;
@@ -63,9 +62,7 @@ static char *jumping(const plan *p) {
         if (b.jump && !list_has(&names, b.effect))
             list_add(&names, b.effect);
     }
-    char *text = list_joined(&names);
-    list_free(&names);
-    return text;
+    return list_joined(&names);
 }
 
 void time_notes(const plan *p, list *notes) {
@@ -89,8 +86,6 @@ void time_notes(const plan *p, list *notes) {
         list_add(notes, "H may change with time between the times at which it "
                         "was looked at: it reads t in a function in C, or "
                         "jumps too often");
-    free(times);
-    free(names);
 }
 
 /* Rows whose steps are longer than the fastest change. */
@@ -120,8 +115,6 @@ void time_words(const plan *p, const row rows[], size_t count, list *words) {
                    "%.4g%s or longer pass over it (%s).",
                    effect, shortest, p->unit, at, p->unit, least, p->unit,
                    joined);
-    free(joined);
-    list_free(&names);
 }
 
 double plan_ends(const plan *p) {
@@ -151,9 +144,7 @@ int plan_refuse_end(const plan *p) {
     char *ends = ends_text(p, plan_ends(p));
     if (ends)
         tool_refuse("%s: %s; --t-end takes an earlier time", p->name, ends);
-    int status = ends ? TOOL_FAILED : TOOL_OK;
-    free(ends);
-    return status;
+    return ends ? TOOL_FAILED : TOOL_OK;
 }
 
 char *plan_why(const plan *p, const char *message) {
@@ -165,7 +156,6 @@ char *member_why(const plan *p, uint64_t member, const char *message) {
     if (!nevh_scene_member_start(p->scene, member, q, q + p->n))
         ends = nevh_solution_ends(p->system, p->run->t_start, p->t_end, q,
                                   q + p->n);
-    free(q);
     return why_until(p, ends, message);
 }
 

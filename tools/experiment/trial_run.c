@@ -292,11 +292,6 @@ trial_run trial_run_new(const plan *p, bool chaos) {
     nevh_field_free(f.field);
     nevh_field_free(f.gradient);
     nevh_field_free(f.exact);
-    free(f.slopes);
-    free(f.length);
-    free(f.z);
-    free(f.before);
-    free(f.trial);
     return found;
 }
 
@@ -331,7 +326,6 @@ static void horizon_notes(const plan *p, const trial_run *f, list *notes) {
                exponent, error, p->per_unit, f->chaos.report.t - start, p->unit,
                horizon < p->t_end ? "" : "beyond the run, ", horizon, p->unit,
                range);
-    free(range);
 }
 
 /* Notes the time followed, and its meaning for a longer run. */

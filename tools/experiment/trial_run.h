@@ -45,7 +45,7 @@ typedef enum {
     SMOOTHNESS_NONE,
     SMOOTHNESS_ALL
 } smoothness;
-/* why  out, of SMOOTHNESS_NONE: where it is not; to be freed */
+/* why  out, of SMOOTHNESS_NONE: where it is not */
 smoothness smoothness_on_way(const plan *, char **why);
 /* A note where it is not smooth. */
 void smoothness_notes(const plan *, list *notes);
@@ -68,7 +68,7 @@ typedef struct {
     double edge_at, edge_time;
     char *failure; /* NULL, or why the orbit could not be followed */
 } trial_run;
-/* failure is to be freed.
+/*
    chaos    whether the indicators are asked for
    cost     1e8 evaluations of terms, and two times nevh_chaos_find */
 trial_run trial_run_new(const plan *, bool chaos);

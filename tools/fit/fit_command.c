@@ -4,7 +4,6 @@
 #include "fit_private.h"
 #include "plot/plot.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 typedef struct {
@@ -78,7 +77,6 @@ static void choose_gradient(job *j, const options *o) {
     if (fits)
         j->fit.asked = before;
     else {
-        list_free(names);
         *names = before;
     }
 }
@@ -129,7 +127,6 @@ static void add_columns(const job *j, table *t, bool is_table) {
         char *title = text_print(is_table ? "corr.\n%s" : "correlation_%s",
                                  j->fit.item[i].name);
         table_column(t, title);
-        free(title);
     }
     if (!is_table) {
         table_column(t, "tolerance");
@@ -247,7 +244,6 @@ static char *add_values(char *line, const fitting *f, bool starts) {
     }
     if (*values)
         line = shell_option(line, starts ? "start" : "set", values);
-    free(values);
     return line;
 }
 
@@ -274,7 +270,6 @@ static void add_next(const job *j, const options *o, list *words) {
     line = shell_option(line, "data", o->fit.data);
     list_add(words, "Next:");
     list_print(words, "%s --plot-kind time --plot -", line);
-    free(line);
 }
 
 /* The origin of the errors, in words. */
@@ -299,7 +294,6 @@ static void add_words(job *j, const options *o, list *words) {
         "%.4g%s",
         f->residuals, f->residuals - f->count, f->chi_square, reduced(j),
         errors);
-    free(errors);
     for (size_t k = 0; k < j->data.columns; k++) {
         const char *name = j->data.names.item[k];
         const char *unit = nevh_scene_label(j->plan.scene, name);
@@ -349,7 +343,6 @@ static int print(job *j, const options *o) {
         note(j, o, &result.before);
     add_words(j, o, &result.after);
     int status = output_page(o, &result, TOOL_OK);
-    page_free(&result);
     return !status && j->poor ? tell_poor(j) : status;
 }
 
@@ -368,8 +361,6 @@ static void report_divergence(const job *j) {
                 j->plan.name, f->iterations, all,
                 sqrt(f->chi_square / (double)f->residuals),
                 known ? " standard deviations" : "");
-    free(all);
-    list_free(&items);
 }
 
 /* Which numbers, and why. */
@@ -400,25 +391,10 @@ static int report_failure(const job *j) {
         tool_refuse("%s: no fit: there is no orbit: %s", j->plan.name, f->why);
     else
         report_divergence(j);
-    free(all);
-    list_free(&names);
     return TOOL_FAILED;
 }
 
 static void clear(job *j) {
-    fitting *f = &j->fit;
-    for (size_t k = 0; k < f->count; k++)
-        free((char *)f->item[k].name);
-    free(f->item);
-    list_free(&f->asked);
-    free(f->correlation);
-    free(f->rms);
-    free(f->residual);
-    free(f->unchecked);
-    free(f->undetermined);
-    free(f->direction);
-    free(f->why);
-    measured_free(&j->data);
     plan_free(&j->plan);
 }
 

@@ -65,8 +65,6 @@ static bool is_quadratic(const profile *p) {
             x[i] = along(p, i, end / 2, step);
         worst = fmax(worst, fabs(risen(p, sum_at(f, x, residual)) - 1));
     }
-    free(x);
-    free(residual);
     return worst <= part;
 }
 
@@ -96,7 +94,7 @@ static void try_step(profile *p, size_t k, trial *t) {
     if (f->count == 1) {
         double *residual = tool_allocate(f->residuals, sizeof *residual);
         sum = sum_at(f, &f->held_at, residual);
-        free(residual);
+        tool_release(residual);
     } else {
         gsl_multifit_nlinear_workspace *w;
         fit_minimise(f, f->data->points, t->free, &sum, &w);
@@ -179,7 +177,6 @@ static void take_profile(profile *p) {
 static void take_linear(profile *p, double variance) {
     fitting *f = p->fit;
     size_t n = f->count;
-    free(f->correlation);
     f->correlation = tool_allocate(n * n, sizeof *f->correlation);
     for (size_t k = 0; k < n; k++) {
         varied *v = &f->item[k];
@@ -243,7 +240,5 @@ void fit_interval_words(const fitting *f, list *words) {
                    "The data set no end to the interval of %s: - where "
                    "there is none within %d errors.",
                    names, FARTHEST * 2);
-        free(names);
     }
-    list_free(&open);
 }

@@ -6,7 +6,6 @@
 #include <gsl/gsl_multifit_nlin.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { MOST_ITERATIONS = 100 };
 static const double least_size = 0.01; /* of a number, in its scale */
@@ -43,7 +42,6 @@ static int residuals(const gsl_vector *x, void *data, gsl_vector *r) {
         gsl_vector_scale(r, -1);
     else
         gsl_vector_set_all(r, no_orbit);
-    free(at);
     return GSL_SUCCESS;
 }
 
@@ -70,8 +68,7 @@ static int derivatives(const gsl_vector *x, void *data, gsl_matrix *j) {
                            (before[i] - after[i]) / (right - left));
         column++;
     }
-    free(at);
-    free(after);
+    tool_release(after);
     return good ? GSL_SUCCESS : GSL_EFAILED;
 }
 
@@ -134,7 +131,6 @@ int fit_minimise(fitting *f, size_t used, gsl_vector *x, double *chi_square,
     int info = 0;
     *w = tool_owned(gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &how,
                                                f->residuals, x->size));
-    free(f->why);
     f->why = NULL;
     int status = gsl_multifit_nlinear_init(x, &what, *w);
     if (!status && f->why)
@@ -150,7 +146,6 @@ int fit_minimise(fitting *f, size_t used, gsl_vector *x, double *chi_square,
         (status == GSL_EMAXITER && at_minimum(f, *w)))
         status = GSL_SUCCESS;
     if (status != GSL_EFAILED) { /* an orbit that failed was a trial's */
-        free(f->why);
         f->why = NULL;
     }
     gsl_vector_memcpy(x, gsl_multifit_nlinear_position(*w));

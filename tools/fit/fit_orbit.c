@@ -33,7 +33,6 @@ static int assign(fitting *f, const varied *v, double value) {
     char *text = text_print("%s=%.17g", v->name, value);
     int status =
         v->start ? nevh_scene_set_start(s, text) : nevh_scene_set(s, text);
-    free(text);
     return status;
 }
 
@@ -99,7 +98,6 @@ int fit_begin(fitting *f, const options *o) {
     f->item = tool_allocate(names.count, sizeof *f->item);
     for (size_t i = 0; !status && i < names.count; i++)
         status = add_varied(f, names.item[i], o);
-    list_free(&names);
     f->held = f->count;
     if (!status && renew(f->plan))
         status = scene_report(f->plan->scene, o);
@@ -133,7 +131,6 @@ static int compare_point(void *data, double t, const double q[],
 }
 
 static bool fails(fitting *f, const char *why) {
-    free(f->why);
     f->why = text_print("%s", why);
     return false;
 }
@@ -168,7 +165,6 @@ static bool follow(fitting *f, nevh_stepper *s, double residual[]) {
     trajectory_follow(r, &(trajectory_watch){.signal = &no_signal,
                                              .save = check_budget,
                                              .data = &b});
-    trajectory_free(r);
     f->cost = nevh_stepper_counts(s).gradients;
     bool dear = check_budget(&b) != TOOL_OK;
     int status = nevh_stepper_status(s);
@@ -180,7 +176,6 @@ static bool follow(fitting *f, nevh_stepper *s, double residual[]) {
     else if (!whole)
         fails(f, "the orbit ends before the data, or is not finite");
     columns_free(&c.columns);
-    free(c.values);
     return whole;
 }
 
@@ -195,7 +190,6 @@ static bool is_too_fast(fitting *f, const double x[]) {
         look && isfinite(f->fastest) ? drive_of(f->plan, &effect) : 0;
     if (!(drive > f->fastest))
         return false;
-    free(f->why);
     f->why = text_print("%s has the frequency %.4g, and these points show "
                         "none above %.4g",
                         effect, drive, f->fastest);
@@ -264,9 +258,6 @@ static void turning_begin(turning *w, const fitting *f) {
 
 static void turning_end(turning *w) {
     columns_free(&w->columns);
-    free(w->value);
-    free(w->way);
-    free(w->turns);
 }
 
 /* All steps of the orbit with the numbers that were found. */
@@ -285,7 +276,6 @@ static bool turn(fitting *f, turning *w) {
             &(row_times){.by = BY_STEPS, .every = 1},
             (row_output){.take = count_turns, .data = w, .mute = true});
         trajectory_follow(r, &(trajectory_watch){.signal = &no_signal});
-        trajectory_free(r);
     }
     nevh_stepper_free(s);
     return good;

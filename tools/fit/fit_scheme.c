@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit_private.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static bool is_dop853(const char *integrator) {
@@ -90,7 +89,6 @@ void fit_find_rounding(fitting *f, const double x[]) {
         if (by == 0)
             exchange_gradients(f);
     }
-    free(r);
 }
 
 bool fit_is_chaotic(const fitting *f) {
@@ -137,7 +135,6 @@ void fit_scheme_words(const fitting *f, list *words) {
             "The residuals of either are rounding: these data do not tell "
             "their orbits apart, and the intervals hold the numbers of "
             "both.");
-    free(tolerance);
 }
 
 /* Sums of squares, and of products of neighbours. */

@@ -12,7 +12,6 @@
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { EIGHTH = 8 };
@@ -25,7 +24,6 @@ static void describe_direction(fitting *f, const gsl_vector *along) {
     static const double part_of_it = 0.03;
     double first = 0;
     bool relative = true;
-    free(f->direction);
     f->direction = text_print("%s", "");
     for (size_t k = 0; k < f->count; k++) {
         double part = gsl_vector_get(along, k), size = f->item[k].value;
@@ -56,7 +54,6 @@ static bool determined(fitting *f, const gsl_matrix *jacobian) {
         length[k] = gsl_blas_dnrm2(&column.vector);
         longest = fmax(longest, length[k]);
     }
-    free(f->undetermined);
     f->undetermined = tool_allocate(p, sizeof *f->undetermined);
     for (size_t k = 0; k < p; k++) {
         gsl_vector_view column = gsl_matrix_column(a, k);
@@ -75,15 +72,12 @@ static bool determined(fitting *f, const gsl_matrix *jacobian) {
         if (!good)
             describe_direction(f, &along.vector);
     }
-    if (good) {
-        free(f->undetermined);
+    if (good)
         f->undetermined = NULL;
-    }
     gsl_matrix_free(a);
     gsl_matrix_free(v);
     gsl_vector_free(s);
     gsl_vector_free(work);
-    free(length);
     return good;
 }
 
@@ -105,7 +99,6 @@ static double fit_part(fitting *f, size_t part, gsl_vector *x) {
                   !determined(f, gsl_multifit_nlinear_jac(w));
     if (failed)
         gsl_vector_memcpy(x, before);
-    free(f->undetermined);
     f->undetermined = NULL;
     gsl_multifit_nlinear_free(w);
     gsl_vector_free(before);
@@ -177,7 +170,6 @@ static attempt attempt_from(fitting *f, gsl_vector *x) {
 static void attempt_free(attempt *a) {
     gsl_multifit_nlinear_free(a->w);
     gsl_vector_free(a->x);
-    free(a->why);
 }
 
 /* The first, which is nearer to the first values, unless the second is lower by what
@@ -378,7 +370,6 @@ int fit_solve(fitting *f) {
         fit_find_rounding(f, a.x->data);
     }
     take_values(f, &a);
-    free(f->why);
     f->why = a.why;
     a.why = NULL;
     int result =

@@ -26,7 +26,6 @@ static char *whole_file(const char *name) {
     char *file = data_file(name);
     FILE *f = fopen(file, "re");
     const char *why = f ? NULL : strerror(errno);
-    free(file);
     size_t room = 1 << 16, used = 0;
     char *text = tool_allocate(room, 1);
     for (size_t got;
@@ -47,7 +46,6 @@ static char *whole_file(const char *name) {
     if (!why)
         return text;
     tool_refuse("--data %s cannot be read: %s", name, why);
-    free(text);
     return NULL;
 }
 
@@ -141,8 +139,6 @@ static int known_names(const reader_of_points *r, const char *name) {
                            file, name, all)
              : tool_refuse("--data %s: no column is one of %s: %s", file,
                            r->named ? "these" : "the scene's", all);
-    free(all);
-    list_free(&known);
     return status;
 }
 
@@ -168,7 +164,6 @@ static int check_header(const reader_of_points *r, const list *only) {
                                  r->line, h->item[i]);
         list_add(&seen, h->item[i]);
     }
-    list_free(&seen);
     if (status)
         return status;
     if (!r->named && !list_has(h, "t"))
@@ -208,7 +203,6 @@ static int read_header(reader_of_points *r, char *line, const char *only) {
         r->use[i] = use_of(r, &taken, r->header.item[i]);
     m->columns = m->names.count;
     int status = check_header(r, &taken);
-    list_free(&taken);
     m->period = tool_allocate(m->columns, sizeof *m->period);
     for (size_t k = 0; k < m->columns; k++)
         m->period[k] = plan_period(r->plan, m->names.item[k]);
@@ -303,7 +297,6 @@ static int read_row(reader_of_points *r, char *line, bool own[]) {
         status = tool_refuse("%s:%zu: t = %g is before the run begins, at %g",
                              m->file, r->line, m->t[m->points],
                              r->plan->run->t_start);
-    list_free(&fields);
     m->points += !status;
     return status;
 }
@@ -326,7 +319,6 @@ static double *reordered(double *from, const place_in_time order[], size_t rows,
     for (size_t i = 0; i < rows; i++)
         memcpy(to + i * columns, from + order[i].at * columns,
                columns * sizeof *to);
-    free(from);
     return to;
 }
 
@@ -339,7 +331,6 @@ static void sort(measured *m) {
     m->t = reordered(m->t, order, m->points, 1);
     m->value = reordered(m->value, order, m->points, m->columns);
     m->sigma = reordered(m->sigma, order, m->points, m->columns);
-    free(order);
 }
 
 static int read_text(reader_of_points *r, char *text, const char *only) {
@@ -352,7 +343,6 @@ static int read_text(reader_of_points *r, char *text, const char *only) {
     bool *own = tool_allocate(r->m->columns, sizeof *own);
     while (!status && (line = next_line(&rest, &r->line)))
         status = read_row(r, line, own);
-    free(own);
     if (!status && !r->m->points)
         status = tool_refuse("--data %s has no rows", r->m->file);
     if (!status)
@@ -366,14 +356,8 @@ static int read_file_of(measured *m, const plan *p, const options *o,
     *m = (measured){.file = o->fit.data};
     char *text = whole_file(o->fit.data);
     int status = text ? read_text(&r, text, only) : TOOL_USAGE;
-    if (!r.sigmas) {
-        free(m->sigma);
+    if (!r.sigmas)
         m->sigma = NULL;
-    }
-    list_free(&r.header);
-    free(r.use);
-    free(r.sigma_of);
-    free(text);
     return status;
 }
 
@@ -385,15 +369,6 @@ int measured_read(measured *m, const plan *p, const options *o,
 int measured_read_named(measured *m, const plan *p, const options *o,
                         const list *names) {
     return read_file_of(m, p, o, names, NULL);
-}
-
-void measured_free(measured *m) {
-    list_free(&m->names);
-    list_free(&m->left_out);
-    free(m->t);
-    free(m->value);
-    free(m->sigma);
-    free(m->period);
 }
 
 size_t measured_find(const measured *m, const char *name) {
@@ -432,6 +407,4 @@ void measured_note(const measured *m, list *notes) {
                    others);
     if (m->late)
         list_print(notes, "left out, after the end: %zu points", m->late);
-    free(names);
-    free(others);
 }

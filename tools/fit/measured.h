@@ -29,7 +29,6 @@ int measured_read(measured *, const plan *, const options *, const char *only);
 /* As measured_read, for columns of other names, without t. */
 int measured_read_named(measured *, const plan *, const options *,
                         const list *names);
-void measured_free(measured *);
 /* The number of a column; `columns` where there is none of that name. */
 size_t measured_find(const measured *, const char *name);
 /* The measured value less `model`; for an angle the smallest of all turns. */

@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measured.h"
 #include <math.h>
-#include <stdlib.h>
 
 void residuals_begin(residuals_of_rows *r, const measured *m, const plan *p) {
     *r = (residuals_of_rows){
@@ -18,8 +17,6 @@ void residuals_end(residuals_of_rows *r) {
     if (!r->data)
         return;
     columns_free(&r->columns);
-    free(r->model);
-    free(r->squares);
 }
 
 void residuals_take(residuals_of_rows *r, double t, const double q[],

@@ -4,7 +4,6 @@
 #include "experiment/row.h"
 #include "hard_cases.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -39,20 +38,16 @@ static const char *kind_name(int kind) {
                                : others[kind - HARD_STOPPED];
 }
 
-/* The command that repeats a case, from its options; to be freed. */
+/* The command that repeats a case, from its options. */
 static char *command_of(const options *o) {
-    char *text = NULL;
-    size_t size;
-    FILE *f = tool_owned(open_memstream(&text, &size));
-    fprintf(f, "%s %s", o->operands.item[0], o->operands.item[1]);
+    char *text = text_print("%s %s", o->operands.item[0], o->operands.item[1]);
     for (size_t i = 0; i < o->settings.count; i++)
-        fprintf(f, " --set %s", o->settings.item[i] + 1);
+        text_extend(&text, " --set %s", o->settings.item[i] + 1);
     if (o->dt.count)
-        fprintf(f, " --dt %s", o->dt.item[0]);
+        text_extend(&text, " --dt %s", o->dt.item[0]);
     if (o->t_end)
-        fprintf(f, " --t-end %s", o->t_end);
-    fclose(f);
-    return tool_owned(text);
+        text_extend(&text, " --t-end %s", o->t_end);
+    return text;
 }
 
 static char *happened(const row *r) {
@@ -113,11 +108,8 @@ static void add_kind(table *t, const plan *p, const hard_case *c,
     table_shown(t, "%zu", count);
     table_shown(t, numbers ? "%.1e" : "", least);
     table_shown(t, numbers ? "%.1e" : "", most);
-    char *text =
-        text_print("%s, %s: %s", worst->integrator, worst->gradient, what);
-    table_text(t, text);
-    free(text);
-    free(what);
+    table_text(
+        t, text_print("%s, %s: %s", worst->integrator, worst->gradient, what));
 }
 
 static void add_rows(suite *all, const plan *p, const hard_case *c,
@@ -147,7 +139,6 @@ static options options_of(const options *o, const hard_case *c) {
     if (c->dt)
         list_add(&own.dt, c->dt);
     own.t_end = c->t_end;
-    list_free(&settings);
     return own;
 }
 
@@ -169,15 +160,9 @@ static int run_case(suite *all, const options *o, const hard_case *c) {
             if (rows.row[i].ran)
                 row_finish(&p, &rows.row[i]);
         }
-        char *repeat = command_of(&own);
-        add_rows(all, &p, c, repeat, &rows);
-        free(repeat);
-        rows_free(&rows);
+        add_rows(all, &p, c, command_of(&own), &rows);
     }
     plan_free(&p);
-    list_free(&own.operands);
-    list_free(&own.settings);
-    list_free(&own.dt);
     return status;
 }
 
@@ -198,7 +183,6 @@ static int check_names(const options *o, size_t *cases) {
     for (size_t i = 1; !status && i < o->operands.count; i++)
         if (!list_has(&names, o->operands.item[i]))
             status = tool_unknown("case", o->operands.item[i], &names);
-    list_free(&names);
     return status;
 }
 
@@ -257,11 +241,7 @@ static int print_suite(const suite *all, const options *o) {
     char *text = list_sentence(&counts, "and");
     list_print(o->format == FORMAT_CSV ? &result.before : &result.after,
                "%zu cases, %zu rows: %s.", all->cases, all->rows, text);
-    int status = output_page(o, &result, TOOL_OK);
-    free(text);
-    list_free(&counts);
-    page_free(&result);
-    return status;
+    return output_page(o, &result, TOOL_OK);
 }
 
 static int hard(const options *o) {
@@ -281,8 +261,6 @@ static int hard(const options *o) {
     }
     if (!status)
         status = print_suite(&all, o);
-    list_free(&own.integrators);
-    list_free(&own.gradients);
     return status;
 }
 

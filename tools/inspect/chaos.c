@@ -80,15 +80,12 @@ static void put_exponents(chaos_job *j, const row *r, estimates *l) {
         put_number(j, now.megno);
         table_text(j->result.table, nevh_chaos_verdict_name(verdict_at(r, l)));
     }
-    free(l->value);
 }
 
 static int fail(chaos_job *j, const row *r, char *known) {
     char *why = text_print("%s, dt = %g: %s", r->integrator, r->dt, known);
     list_print(&j->result.before, "failed: %s", why);
     tool_refuse("%s: %s", j->plan->name, why);
-    free(known);
-    free(why);
     return TOOL_FAILED;
 }
 
@@ -145,7 +142,6 @@ static int run_history(chaos_job *j, row *r) {
     confirm(r, status);
     for (size_t i = 0; i < count; i++)
         put_exponents(j, r, &looks[i]);
-    free(looks);
     return status ? fail(j, r, why_of(j, r)) : TOOL_OK;
 }
 
@@ -193,7 +189,6 @@ static void unresolved_words(chaos_job *j, const row *r) {
                          c->text, c->found.report.t);
     list_print(&j->result.after, "The steps of %s at dt = %g are %s; %s.",
                r->integrator, r->dt, nevh_chaos_verdict_name(steps), what);
-    free(what);
 }
 
 static void row_words(chaos_job *j, const row *r) {
@@ -238,7 +233,6 @@ static void row_words(chaos_job *j, const row *r) {
                    "ones (%s) have %.3g +- %.1g.",
                    r->integrator, r->dt, r->confirmed.text,
                    r->confirmed.found.exponent, r->confirmed.found.error);
-    free(what);
 }
 
 /* Notes a change of the energy: the exponents are those of the scheme's own map,
@@ -263,7 +257,6 @@ static void note_energy(chaos_job *j, const row *r) {
                    "its scale): the result holds for these steps, not for H; "
                    "take a smaller dt.",
                    r->integrator, r->dt, error);
-    free(q);
     nevh_energy_free(energy);
     nevh_stepper_free(s);
 }
@@ -384,7 +377,6 @@ static int chaos_of(const options *o, const plan *p) {
     }
     if (status != TOOL_USAGE)
         status = output_page(o, &j.result, status);
-    page_free(&j.result);
     return status;
 }
 

@@ -42,7 +42,6 @@ static smoothness smoothness_finding(const plan *p, const nevh_probe *probe,
                      notes);
     if (why)
         list_print(notes, "  (%s)", why);
-    free(why);
     return on_way;
 }
 
@@ -143,7 +142,6 @@ static bool is_refusal(const refusals *r, const char *scheme,
                        const char *message) {
     char *why = reason(scheme, message);
     bool known = find_reason(r, why) < r->reasons.count;
-    free(why);
     return known;
 }
 
@@ -154,11 +152,8 @@ static void add_refusal(refusals *r, const char *scheme, const char *message) {
         list_add(&r->reasons, why);
         list_add(&r->names, scheme);
     } else {
-        char *longer = text_print("%s, %s", r->names.item[i], scheme);
-        free(r->names.item[i]);
-        r->names.item[i] = longer;
+        r->names.item[i] = text_print("%s, %s", r->names.item[i], scheme);
     }
-    free(why);
 }
 
 /* "unstable", and by how much where no step is stable; NULL: nothing. */
@@ -196,7 +191,6 @@ static void add_trial_run(const plan *p, const nevh_integrator *scheme,
     bool exact = nevh_integrator_needs(scheme) & NEVH_PARTS; /* at any step */
     char *text = fits && !exact ? prediction(p, scheme, ahead, limit) : NULL;
     table_text(t, text);
-    free(text);
 }
 
 /* The table and the words below it. */
@@ -302,7 +296,6 @@ static void other_words(const fitting *f, list *words) {
     for (size_t i = 0; i < f->refused.names.count; i++)
         list_print(words, "Do not fit: %s: %s", f->refused.names.item[i],
                    f->refused.reasons.item[i]);
-    free(others);
 }
 
 /* Reasons are a column where programs read, and below the table where people
@@ -316,9 +309,6 @@ static void add_schemes(fitting *f, page *result) {
         add_scheme(f, scheme);
     if (!f->why)
         other_words(f, &result->after);
-    list_free(&f->refused.names);
-    list_free(&f->refused.reasons);
-    list_free(&f->others);
 }
 
 static int check_plan(const options *o, const plan *p) {
@@ -341,10 +331,8 @@ static int check_plan(const options *o, const plan *p) {
                            .table = result.table},
                 &result);
     if (o->quiet && is_table)
-        list_free(&result.after);
-    free(ahead.failure);
+        result.after = (list){0};
     int status = output_page(o, &result, TOOL_OK);
-    page_free(&result);
     return status;
 }
 

@@ -32,7 +32,6 @@ static const nevh_system *leave_alone(plan *p, size_t effect) {
         char *name = text_print("%s", nevh_system_effect_name(s, i));
         bool failed = nevh_scene_enable(p->scene, name, i == effect);
         s = failed ? NULL : nevh_scene_system(p->scene);
-        free(name);
     }
     return s;
 }
@@ -46,7 +45,6 @@ static void find_rates(const nevh_system *s, size_t n, alone *a) {
             a->most = fmax(a->most, rates[k]);
         }
     }
-    free(rates);
 }
 
 static void find_reads(const nevh_system *s, const plan *p, alone *a) {
@@ -77,7 +75,6 @@ static void time_gradients(nevh_field *field, const plan *p, alone *a) {
     double values = (double)(nevh_field_counts(field).values - before);
     a->gradient = status ? NAN : spent / (double)count;
     a->each = status || values == 0 ? NAN : spent / values;
-    free(d);
 }
 
 static void find_time(const nevh_system *s, const plan *p, alone *a) {
@@ -112,7 +109,6 @@ static void look_at_all(plan *p, price prices[], size_t count) {
     for (size_t i = 0; i < count; i++) {
         char *name = text_print("%s", nevh_system_effect_name(p->system, i));
         nevh_scene_enable(p->scene, name, prices[i].on);
-        free(name);
     }
     p->system = nevh_scene_system(p->scene);
 }
@@ -151,7 +147,6 @@ static int run(const plan *p, price prices[], size_t count, list *notes) {
         char *why = plan_why(p, nevh_stepper_message(s));
         list_print(notes, "the run failed: %s", why);
         tool_refuse("%s: the run failed: %s", p->name, why);
-        free(why);
     }
     nevh_stepper_free(s);
     return status ? TOOL_FAILED : TOOL_OK;
@@ -166,7 +161,6 @@ static char *reading(const alone *a) {
         text[length - 2] = 0;
     if (length || (a->least == 0 && a->most == 0))
         return text;
-    free(text);
     return text_print("momenta (friction)");
 }
 
@@ -175,11 +169,6 @@ static char *friction(const alone *a) {
         return NULL;
     return a->least == a->most ? text_print("%g", a->most)
                                : text_print("%g ... %g", a->least, a->most);
-}
-
-static void put_text(table *t, char *text) {
-    table_text(t, text);
-    free(text);
 }
 
 static void put_share(table *t, double part, double whole) {
@@ -193,8 +182,8 @@ static void put_row(table *t, const char *name, const price *c,
                     const price *sum) {
     table_text(t, name);
     table_text(t, c->on ? "on" : "off");
-    put_text(t, reading(&c->alone));
-    put_text(t, friction(&c->alone));
+    table_text(t, reading(&c->alone));
+    table_text(t, friction(&c->alone));
     table_number(t, c->alone.instances);
     table_number(t, c->values);
     put_share(t, c->values, sum->values);
@@ -227,11 +216,9 @@ static int effects_of(const options *o, plan *p) {
     if (status != TOOL_USAGE) {
         fill(p, prices, count, result.table);
         if (o->quiet && o->format == FORMAT_TABLE)
-            list_free(&result.before);
+            result.before = (list){0};
         status = output_page(o, &result, status);
     }
-    free(prices);
-    page_free(&result);
     return status;
 }
 

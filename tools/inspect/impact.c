@@ -44,16 +44,8 @@ static choice choices(const plan *p) {
         add_choice(&c, p, name);
         if (nevh_scene_transform(p->scene))
             add_choice(&c, p, transformed);
-        free(transformed);
     }
     return c;
-}
-
-static void free_choice(choice *c) {
-    for (size_t i = 0; i < c->count; i++)
-        free(c->name[i]);
-    free(c->name);
-    free(c->fits);
 }
 
 static bool fits(const choice *c, const char *name) {
@@ -95,8 +87,6 @@ static void draw(plot **to, plan *p, const char *effect, const both *b) {
         dense[on] = trace_dense(p, b->integrator);
     }
     impact_draw(to, p, effect, dense, &d);
-    trace_free(&dense[0]);
-    trace_free(&dense[1]);
 }
 
 static bool look(plan *p, const char *effect, both *b) {
@@ -119,15 +109,6 @@ static bool look(plan *p, const char *effect, both *b) {
         b->ran &= !b->trace[on].status;
     }
     return true;
-}
-
-static void free_both(both *b) {
-    for (int on = 0; on < 2; on++) {
-        free_choice(&b->choice[on]);
-        free(b->structure[on]);
-        if (b->trace[on].states)
-            trace_free(&b->trace[on]);
-    }
 }
 
 /* Any of n variables from `first` on. */
@@ -242,8 +223,6 @@ static bool put_row(const options *o, const char *effect, bool on,
     else
         table_text(t, names);
     effect_words(effect, b, names, count, &result->after);
-    list_free(&out);
-    free(names);
     return compared && d.largest > far_apart && !rests(a) && !rests(c);
 }
 
@@ -256,7 +235,6 @@ static void chaos_words(const plan *p, list *words) {
                    "%.3g%s, until orbits are unrelated.  Compare the times of "
                    "1 %%, not the final differences, which only show that.",
                    1 / found.chaos.exponent, p->unit);
-    free(found.failure);
 }
 
 /* Tells what the step alone does to the orbit, where both runs end at one time. */
@@ -277,8 +255,6 @@ static void step_words(plan *p, const char *integrator, list *words) {
                    "by %.1e.  A difference that is no larger may be the "
                    "step's.",
                    integrator, dt[0], d.at_end);
-    trace_free(&whole);
-    trace_free(&half);
 }
 
 /* returns  TOOL_FAILED where no effect could be compared, since runs failed */
@@ -303,9 +279,7 @@ static int add_all(const options *o, plan *p, page *result, plot **to) {
         used = b.ran ? b.integrator : used;
         if (b.integrator && !b.ran && !why)
             why = text_print("%s", b.trace[!b.trace[0].status].message);
-        free_both(&b);
         impact_switch(p, effect, on);
-        free(effect);
     }
     if (apart)
         chaos_words(p, &result->after);
@@ -315,7 +289,6 @@ static int add_all(const options *o, plan *p, page *result, plot **to) {
     if (failed)
         tool_refuse("%s: no effect can be compared: the run fails: %s", p->name,
                     why);
-    free(why);
     return failed ? TOOL_FAILED : TOOL_OK;
 }
 
@@ -331,7 +304,6 @@ int impact(const options *o, plan *p) {
     page result = {.table = table_new()};
     plot *to = NULL;
     if (plot_check(o)) {
-        page_free(&result);
         return TOOL_USAGE;
     }
     plan_notes(p, &result.before);
@@ -358,13 +330,11 @@ int impact(const options *o, plan *p) {
             "the run with the effect, over those without it. rules out: "
             "integrators that fit only without it.");
     if (o->quiet && o->format == FORMAT_TABLE)
-        list_free(&result.before);
+        result.before = (list){0};
     bool first = plot_goes_first(o);
     int drawn = first ? write_plot(o, to) : TOOL_OK;
     status = output_page(o, &result, status);
     if (!first)
         drawn = write_plot(o, to);
-    plot_free(to);
-    page_free(&result);
     return drawn ? TOOL_USAGE : status;
 }

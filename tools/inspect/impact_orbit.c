@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "impact_private.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -43,14 +42,6 @@ static trace new_trace(const plan *p, size_t most) {
         o.high[k] = -INFINITY;
     }
     return o;
-}
-
-void trace_free(trace *o) {
-    free(o->states);
-    free(o->last);
-    free(o->low);
-    free(o->high);
-    free(o->message);
 }
 
 static int go(trace *o, nevh_stepper *s, const nevh_observer *observer) {

@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "impact_private.h"
 #include <math.h>
-#include <stdlib.h>
 
 enum { TURNS = 12 }; /* of a curve that is not to be a band */
 
@@ -103,7 +102,4 @@ void impact_draw(plot **to, const plan *p, const char *effect,
         choose_span(*to, dense, k, d);
     draw_orbit(*to, &dense[1], k, "with", PLOT_LINES);
     draw_orbit(*to, &dense[0], k, "without", PLOT_REFERENCE);
-    free(heading);
-    free(x);
-    free(y);
 }

@@ -21,13 +21,12 @@ typedef struct {
     double at_end, largest, since; /* of the range; at_end, since: or NAN */
 } difference;
 
-/* Runs one orbit with the first dt and gradient; to be freed. */
+/* Runs one orbit with the first dt and gradient. */
 trace trace_run(const plan *, const char *integrator);
 /* The same without times, with at most so many states. */
 trace trace_sampled(const plan *, const char *integrator, size_t most);
 /* With so many that a curve looks like one. */
 trace trace_dense(const plan *, const char *integrator);
-void trace_free(trace *);
 difference trace_difference(const trace *, const trace *);
 
 /* Switches an effect; the plan follows.  The start stays that of the scene as it is,

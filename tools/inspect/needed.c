@@ -53,7 +53,6 @@ static bool run_without(search *x, unsigned off, double to[]) {
                isfinite(to[i]);
     }
     x->kept = fine ? o.kept : x->kept;
-    trace_free(&o);
     return fine;
 }
 
@@ -121,7 +120,6 @@ static void take_pairs(search *x) {
             x->pairs[x->n_pairs++] = (pair){off, change};
             change = tool_allocate(SAMPLES, sizeof *change);
         }
-    free(change);
 }
 
 /* The sum of changes by a set at a sample; pairs are known as such. */
@@ -184,8 +182,6 @@ static unsigned choose(search *x) {
             error = found ? change_of(x, found, change) : 0;
         }
     x->error = error;
-    free(all);
-    free(change);
     return found;
 }
 
@@ -209,8 +205,6 @@ static void show(const search *x, unsigned off, page *result) {
                "%.1e of its range, %.6g, until t = %.9g; %zu runs.",
                *text ? text : "none", x->plan->observable, x->error, x->scale,
                x->plan->t_end, x->runs);
-    free(text);
-    list_free(&names);
 }
 
 static int find(const options *o, plan *p, search *x) {
@@ -254,15 +248,7 @@ int needed(const options *o, plan *p) {
                    p->dt[0]);
         status = output_page(o, &result, status);
     }
-    for (size_t i = 0; i < x.count; i++) {
+    for (size_t i = 0; i < x.count; i++)
         impact_switch(p, x.effect[i], true);
-        free(x.effect[i]);
-        free(x.change[i]);
-    }
-    for (size_t i = 0; i < x.n_pairs; i++)
-        free(x.pairs[i].change);
-    free(x.whole);
-    free(x.part);
-    page_free(&result);
     return status;
 }

@@ -53,7 +53,6 @@ static double ratio_along(const plan *p, nevh_stepper *s) {
         if (f.most[p->n + k] > 0)
             worst = fmax(worst, f.most[p->n + k] / f.most[k]);
     nevh_field_free(f.all);
-    free(room);
     return worst;
 }
 
@@ -95,10 +94,6 @@ static void all_words(const plan *p, double ratio, list *notes) {
                "exact: %s; B, which kicks: %s",
                a, *b ? b : "nothing");
     size_words(p, ratio, notes);
-    free(a);
-    free(b);
-    list_free(&fast);
-    list_free(&slow);
 }
 
 /* Nothing where A has no force: there are other splittings for T(p) + V(q). */

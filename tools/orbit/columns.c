@@ -18,10 +18,6 @@ quantities columns_new(const plan *p) {
 }
 
 void columns_free(quantities *c) {
-    for (size_t i = 0; i < c->count; i++)
-        free(c->item[i].name);
-    free(c->item);
-    free(c->observed);
     nevh_field_free(c->field);
     nevh_shadow_free(c->shadow);
 }
@@ -73,9 +69,7 @@ static int refuse_name(const plan *p, const char *name) {
     for (size_t i = 0; nevh_scene_shown_name(p->scene, NEVH_OBSERVABLES, i);
          i++)
         list_add(&known, nevh_scene_shown_name(p->scene, NEVH_OBSERVABLES, i));
-    int status = tool_unknown("column", name, &known);
-    list_free(&known);
-    return status;
+    return tool_unknown("column", name, &known);
 }
 
 int columns_add(quantities *c, const char *name) {
@@ -90,11 +84,7 @@ int columns_add(quantities *c, const char *name) {
         is.kind == COLUMN_ENERGY_ERROR || is.kind == COLUMN_SHADOW_ERROR;
     if (relative && !(c->scale > 0))
         c->scale = plan_energy_scale(c->plan);
-    quantity *more = tool_allocate(c->count + 1, sizeof *more);
-    if (c->count)
-        memcpy(more, c->item, c->count * sizeof *more);
-    free(c->item);
-    c->item = more;
+    c->item = tool_enlarge(c->item, c->count + 1, sizeof *c->item);
     is.name = text_print("%s", name);
     c->item[c->count++] = is;
     return TOOL_OK;

@@ -44,7 +44,7 @@ int columns_follow(quantities *, const char *integrator, double dt);
 /* Computes the values; those that are not finite become NAN. */
 void columns_values(quantities *, double t, const double q[], const double p[],
                     double values[]);
-/* The axis: name and unit.  To be freed. */
+/* The axis: name and unit. */
 char *column_label(const plan *, const quantity *);
 
 #endif

@@ -167,7 +167,7 @@ static void draw_bob(plot *to, const bob_list *b, size_t bob, const orbit *o,
     plot_point(to, series, at[0], at[1]);
 }
 
-/* NULL: the only one, which has none; to be freed. */
+/* NULL: the only one, which has none. */
 static char *bob_name(const bob_list *b, size_t bob) {
     const char *given = nevh_scene_part_at(b->scene, b->part[bob]).name;
     bool on_rods = b->count < nevh_scene_part_count(b->scene);
@@ -185,7 +185,6 @@ static void name_bob(plot *to, const bob_list *b, size_t bob,
     size_t series = plot_series(to, name);
     plot_style(to, series, PLOT_GUIDE);
     plot_point(to, series, at[0], at[1]);
-    free(name);
 }
 
 static void draw(plot *to, const bob_list *b, const orbit *o) {
@@ -217,10 +216,9 @@ static double least_turns(const bob_list *b, const orbit *o) {
 static void follow_dense(run_picture *picture, bob_list *b) {
     row_times dense = orbit_dense_times(&picture->plan);
     picture_follow(picture, &dense, 2 * b->count, fill, b);
-    free(dense.time);
 }
 
-/* returns  what is to be said of it; to be freed */
+/* returns  what is to be said of it */
 static char *follow(run_picture *picture, bob_list *b) {
     follow_dense(picture, b);
     char *words = picture_cut(picture, least_turns(b, picture->orbits.item),
@@ -274,7 +272,6 @@ static void note_outside(const bob_list *b, const run_picture *picture,
                     picture->orbits.count > 1 || !o->integrator ? o->name
                                                                 : o->integrator,
                     name ? name : "the body");
-        free(name);
     }
 }
 
@@ -299,18 +296,12 @@ plot *plot_configuration(run_picture *picture) {
         set_window(to, picture, &b, window);
         draw(to, &b, picture_orbit(picture, i));
         note_outside(&b, picture, picture_orbit(picture, i), window, &outside);
-        free(heading);
     }
     plot_columns(to, picture_across(picture));
     char *more =
         text_print("circles: the start; discs: t = %.6g%s%s%s%s", first->t,
                    picture->plan.unit, *cut ? "; " : "", cut, outside);
-    free(outside);
-    free(cut);
     picture_note(picture, to, more);
-    free(more);
-    free(x);
-    free(y);
     return to;
 }
 
@@ -335,7 +326,6 @@ static void follow_evenly(run_picture *picture, bob_list *b) {
         even.time[even.count++] = begin + span * (double)i / (FRAMES * EACH);
     picture_follow(picture, &even, 4 * nevh_scene_part_count(b->scene),
                    fill_parts, b);
-    free(even.time);
 }
 
 /* The range of the first orbit with a margin: other orbits are seen to leave it. */
@@ -364,10 +354,7 @@ static char *heading_of(const run_picture *picture, const orbit *o) {
     char *name = text_print("%s", picture->orbits.count > 1 ? o->name : "");
     if (!o->status)
         return name;
-    char *text =
-        text_print("%s%sended at t = %.4g", name, *name ? ", " : "", o->t);
-    free(name);
-    return text;
+    return text_print("%s%sended at t = %.4g", name, *name ? ", " : "", o->t);
 }
 
 /* One orbit up to row `last`, or to where it ended. */
@@ -405,7 +392,6 @@ static plot *draw_frame(const run_picture *picture, const bob_list *b,
             plot_panel(to, heading, x, y);
         else
             plot_heading(to, *heading ? heading : NULL);
-        free(heading);
         plot_equal(to);
         plot_span_x(to, low[0], high[0]);
         plot_span_y(to, low[1], high[1]);
@@ -415,9 +401,6 @@ static plot *draw_frame(const run_picture *picture, const bob_list *b,
                             begin + span * (double)frame / FRAMES, p->unit,
                             *more ? "; " : "", more);
     picture_note(picture, to, when);
-    free(when);
-    free(x);
-    free(y);
     return to;
 }
 
@@ -449,6 +432,5 @@ plot *plot_animation(run_picture *picture) {
             first = next;
         last = next;
     }
-    free(cut);
     return first;
 }

@@ -3,7 +3,6 @@
 #include "cli/commands.h"
 #include "experiment/plan.h"
 #include <math.h>
-#include <stdlib.h>
 
 static int write_text(const options *o, const char *text) {
     output out;
@@ -25,14 +24,12 @@ static int export_plan(const options *o, const plan *p) {
         names[k] = nevh_scene_coordinate(p->scene, k);
     if (!p->friction && !p->balance)
         as.energy_scale = plan_energy_scale(p);
-    char *text = s ? nevh_stepper_program(s, &as) : NULL;
+    char *text = s ? text_adopt(nevh_stepper_program(s, &as)) : NULL;
     int status = TOOL_USAGE;
     if (text)
         status = write_text(o, text);
     else if (s)
         tool_refuse("%s: %s", name, nevh_stepper_message(s));
-    free(text);
-    free(names);
     nevh_stepper_free(s);
     return status;
 }

@@ -92,9 +92,7 @@ static nevh_loop *new_loop(flow_job *j, const flow_row *r, int eye,
                                            : p->n > 1 ? 2048
                                                       : 0,
                             .shapes = shapes};
-    nevh_loop *l = tool_owned(nevh_loop_new(p->system, scheme, &o, &is));
-    free(steps);
-    return l;
+    return tool_owned(nevh_loop_new(p->system, scheme, &o, &is));
 }
 
 /* As many as have a shape that is filled. */
@@ -192,7 +190,6 @@ static void add_records(table *t, const flow_job *j) {
                 table_text(t, NULL);
             table_text(t, status);
             table_number(t, at.error);
-            free(status);
         }
     }
 }
@@ -230,9 +227,7 @@ static void show_row(table *t, const flow_job *j, const flow_row *r) {
         table_shown(t, "%.6g", at.area);
         show_ratio(t, at.area / first);
         table_shown(t, "%zu", at.points);
-        char *status = status_of(r, at);
-        table_text(t, status);
-        free(status);
+        table_text(t, status_of(r, at));
     }
 }
 
@@ -250,8 +245,6 @@ static table *shown(const flow_job *j) {
     table_column(t, "status");
     for (size_t i = 0; i < j->rows; i++)
         show_row(t, j, &j->row[i]);
-    free(dt);
-    free(time);
     return t;
 }
 
@@ -338,7 +331,6 @@ static int print(const flow_job *j, const options *o, int status) {
         words(j, &result.after);
     }
     status = output_page(o, &result, status);
-    page_free(&result);
     return status;
 }
 
@@ -356,11 +348,7 @@ static void forget(flow_job *j) {
         nevh_loop_free(j->row[i].loop);
         for (int k = 0; k < FLOW_EYES; k++)
             nevh_loop_free(j->row[i].eye[k]);
-        free(j->row[i].status);
     }
-    free(j->row);
-    free(j->time);
-    shape_free(&j->shape);
     plan_free(&j->plan);
 }
 

@@ -3,7 +3,6 @@
 #include "flow.h"
 #include "plot/plot.h"
 #include <math.h>
-#include <stdlib.h>
 
 enum { MOST_SHAPES = 6 };
 
@@ -68,7 +67,6 @@ static outline measured(const flow_job *j, const nevh_loop *l, size_t time) {
         last_x = q[plane(j)];
         last_y = p[plane(j)];
     }
-    free(q);
     nevh_loop_area at = nevh_loop_result(l, time);
     return (outline){sum / (double)count,
                      time == 0 || (flow_resolved(at) && !at.inside &&
@@ -102,7 +100,6 @@ static void widen_by(window *w, const picture *f, const flow_row *r,
     double shift = shift_of(f, s, w);
     for (size_t k = 0; nevh_loop_shape(r->loop, time, k, q, p); k++)
         widen(w, q[plane(j)] - shift, p[plane(j)]);
-    free(q);
 }
 
 /* The window holds the shapes of symplectic integrators, if there are any; others
@@ -167,7 +164,6 @@ static void draw_outline(plot *to, const flow_job *j, const nevh_loop *l,
     }
     if (!closed && nevh_loop_shape(l, time, 0, q, p))
         plot_point(to, series, q[plane(j)] - shift, p[plane(j)]);
-    free(q);
 }
 
 /* Names the time at the right end of the shape, where that is in the window;
@@ -184,15 +180,13 @@ static bool name_time(plot *to, const flow_job *j, const nevh_loop *l,
             up = y;
         }
     }
-    free(q);
     if (!isfinite(right))
         return false;
-    char *name =
-        text_print("t = %.4g%s", nevh_loop_result(l, time).t, j->plan.unit);
-    size_t series = plot_series(to, name);
+    size_t series =
+        plot_series(to, text_print("t = %.4g%s", nevh_loop_result(l, time).t,
+                                   j->plan.unit));
     plot_style(to, series, PLOT_GUIDE);
     plot_point(to, series, right, up);
-    free(name);
     return true;
 }
 
@@ -248,11 +242,8 @@ static char *area_words(const flow_job *j, const flow_row *r) {
     if (worst < nothing)
         return text_print("%s kept until t = %.4g%s", area, last.t,
                           j->plan.unit);
-    char *ratio = ratio_text(last.area / first);
-    char *text = text_print("%s \303\227 %s until t = %.4g%s", area, ratio,
-                            last.t, j->plan.unit);
-    free(ratio);
-    return text;
+    return text_print("%s \303\227 %s until t = %.4g%s", area,
+                      ratio_text(last.area / first), last.t, j->plan.unit);
 }
 
 /* Every so many times has a shape. */
@@ -293,14 +284,10 @@ static char *heading_of(const picture *f, const flow_row *r, bool outside) {
                            j->plan.unit);
     if (!has_one_dt(j))
         dt = text_print(", dt = %.4g%s", r->dt, j->plan.unit);
-    char *text = text_print("%s%s: %s%s%s%s", r->integrator, dt ? dt : "",
-                            whole || any ? area : "failed",
-                            any && !whole ? ", then failed" : "",
-                            until ? until : "", outside ? ", outside" : "");
-    free(area);
-    free(until);
-    free(dt);
-    return text;
+    return text_print("%s%s: %s%s%s%s", r->integrator, dt ? dt : "",
+                      whole || any ? area : "failed",
+                      any && !whole ? ", then failed" : "", until ? until : "",
+                      outside ? ", outside" : "");
 }
 
 static void begin_panel(plot **to, const flow_job *j, const window *w) {
@@ -314,9 +301,6 @@ static void begin_panel(plot **to, const flow_job *j, const window *w) {
         *to = plot_new(j->plan.title, x, y);
     plot_span_x(*to, w->low_x, w->high_x);
     plot_span_y(*to, w->low_y, w->high_y);
-    free(momentum);
-    free(x);
-    free(y);
 }
 
 /* Later shapes are longer: they are behind.
@@ -336,9 +320,7 @@ static size_t draw_panel(plot **to, const picture *f, const flow_row *r,
         } else
             left_out++;
     }
-    char *heading = heading_of(f, r, outside);
-    plot_heading(*to, heading);
-    free(heading);
+    plot_heading(*to, heading_of(f, r, outside));
     return left_out;
 }
 
@@ -355,8 +337,6 @@ static void note(plot *to, const picture *f, size_t left_out) {
         j->plan.n > 1 ? ", summed over all planes, of which one is drawn" : "",
         left_out ? "; shapes that are long threads are not drawn" : "");
     plot_note_run(to, &shown, dt, more);
-    free(more);
-    free(dt);
 }
 
 int flow_plot(const flow_job *j, const options *o) {
@@ -371,10 +351,7 @@ int flow_plot(const flow_job *j, const options *o) {
     }
     if (to)
         note(to, &f, left_out);
-    free(f.shapes);
     if (!to)
         return tool_refuse("nothing to plot: no integrator fits");
-    int drawn = plot_write(to, o);
-    plot_free(to);
-    return drawn;
+    return plot_write(to, o);
 }

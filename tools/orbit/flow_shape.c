@@ -3,7 +3,6 @@
 #include "flow_shape.h"
 #include <ctype.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double turn = 6.283185307179586;
@@ -177,9 +176,7 @@ static void split(list *to, const char *text, size_t length) {
         depth += (c == '(' || c == '[') - (c == ')' || c == ']');
         if (i < length && (c != ',' || depth > 0))
             continue;
-        char *part = trimmed(text + from, i - from);
-        list_add(to, part);
-        free(part);
+        list_add(to, trimmed(text + from, i - from));
         from = i + 1;
     }
 }
@@ -200,9 +197,7 @@ static int unknown_variable(const plan *p, const char *name) {
         list_add(&names, nevh_scene_coordinate(p->scene, k));
         list_print(&names, "p_%s", nevh_scene_coordinate(p->scene, k));
     }
-    int status = tool_unknown("coordinate or momentum", name, &names);
-    list_free(&names);
-    return status;
+    return tool_unknown("coordinate or momentum", name, &names);
 }
 
 static int read_loop(shape *c, const list *parts, const char *text) {
@@ -217,8 +212,6 @@ static int read_loop(shape *c, const list *parts, const char *text) {
                              : TOOL_OK;
         list_add(&c->variable, name);
         list_add(&c->formula, value);
-        free(name);
-        free(value);
         if (status)
             return status;
     }
@@ -238,7 +231,6 @@ static int check_closed(shape *c) {
                                  "at t = 0 and %.6g at t = 2*pi",
                                  c->variable.item[i], at[0], at[1]);
     }
-    free(q);
     return status;
 }
 
@@ -259,8 +251,6 @@ static int read_middle(shape *c, const options *o, const list *parts,
         row[i] = row_of(c->plan, name);
         int status = row[i] == 2 * n ? unknown_variable(c->plan, name)
                                      : read_number(c, o, value, &number);
-        free(name);
-        free(value);
         if (status)
             return status;
         *(row[i] < n ? &c->x : &c->y) = number;
@@ -315,9 +305,6 @@ static int read_given(shape *c, const options *o, const char *text) {
     }
     if (!status && c->kind == FLOW_LOOP)
         status = check_closed(c);
-    list_free(&parts);
-    free(whole);
-    free(name);
     return status;
 }
 
@@ -374,7 +361,6 @@ static int measure(const plan *p, nevh_stepper *s, extent *e) {
                              p->name, nevh_stepper_message(s));
     else
         status = TOOL_OK;
-    free(q);
     return status;
 }
 
@@ -395,7 +381,6 @@ static bool moves_as_the_orbit(shape *c, nevh_stepper *s, const extent *e) {
         for (size_t k = 0; fits && k < 2 * p->n; k++)
             fits = fabs(to[k] - from[k]) <= most * e->longest[k];
     }
-    free(from);
     return fits;
 }
 
@@ -453,7 +438,6 @@ static int choose(shape *c) {
         c->width /= 2;
         c->height /= 2;
     }
-    free(room);
     nevh_stepper_free(s);
     if (status)
         return status;
@@ -469,10 +453,4 @@ int shape_read(shape *c, const plan *p, const options *o, const char *text) {
         return choose(c);
     c->text = text_print("%s", text);
     return read_given(c, o, text);
-}
-
-void shape_free(shape *c) {
-    free(c->text);
-    list_free(&c->variable);
-    list_free(&c->formula);
 }

@@ -25,7 +25,6 @@ typedef struct {
 /* "disc(x = 1, p_x = 0, 0.3)", box, cat, loop; NULL: a cat round the start.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int shape_read(shape *, const plan *, const options *, const char *text);
-void shape_free(shape *);
 /* A nevh_curve_fn; data is the shape. */
 int shape_curve(void *data, size_t count, const double s[], double q[],
                 double p[]);

@@ -48,7 +48,6 @@ typedef struct {
 static bool is_smooth(const plan *p, const nevh_probe *probe) {
     char *why = NULL;
     smoothness on_way = smoothness_on_way(p, &why);
-    free(why);
     return on_way == SMOOTHNESS_UNKNOWN && !nevh_probe_status(probe)
                ? nevh_probe_finding(probe, NEVH_IS_SMOOTH).holds
                : on_way != SMOOTHNESS_NONE;
@@ -114,7 +113,7 @@ static int take(void *data, size_t step, double t, const double q[],
 /* Samples along a run.
    dt       of its steps
    watch    of its energy; NULL: not looked at
-   why      out: the reason, to be freed
+   why      out: the reason
    returns  a status */
 static int sample(frequencies_job *j, nevh_stepper *s, double dt,
                   nevh_energy *watch, char **why) {
@@ -133,7 +132,7 @@ static int sample(frequencies_job *j, nevh_stepper *s, double dt,
     return *why && !status ? NEVH_EFAILED : status;
 }
 
-/* why      out: the reason, to be freed
+/* why      out: the reason
    returns  0; -1 refused; else a status */
 static int run(frequencies_job *j, const char *integrator, char **why) {
     const plan *p = &j->plan;
@@ -251,8 +250,8 @@ static int find_spectrum(frequencies_job *j, const char *integrator,
     if (reports)
         frequencies_length_words(&j->words, integrator, of->name,
                                  h * (double)(count - 1), j->end - j->begin);
-    while (!reports && j->words.count > words)
-        free(j->words.item[--j->words.count]);
+    else
+        j->words.count = words;
     return TOOL_OK;
 }
 
@@ -308,13 +307,11 @@ static int confirm_by(frequencies_job *j, const char *integrator,
         list_print(
             &j->words, "%s: errors are not known: %s it fails: %s", integrator,
             kind == NEVH_FINER_STEPS ? "with finer steps" : "by dop853", why);
-    free(why);
     for (size_t i = 0; !status && i < j->count; i++) {
         spectrum finer = {0};
         if (ran)
             status = find_spectrum(j, integrator, &j->all[i], false, &finer);
         compare_lines(&all[i], &finer, part);
-        free(finer.name);
     }
     nevh_finer_free(f);
     return status;
@@ -343,9 +340,6 @@ static int analyse(frequencies_job *j, const options *o,
             add_row(j, o, integrator, &all[i], k);
         table_group(j->table);
     }
-    for (size_t i = 0; i < j->count; i++)
-        free(all[i].name);
-    free(all);
     return status;
 }
 
@@ -361,7 +355,6 @@ static int run_and_analyse(frequencies_job *j, const options *o,
         tool_refuse("%s: %s failed: %s", j->plan.name, integrator, why);
         j->worst = TOOL_FAILED;
     }
-    free(why);
     return status ? TOOL_OK : analyse(j, o, integrator);
 }
 
@@ -402,7 +395,6 @@ static int analyse_all(frequencies_job *j, const options *o) {
         note(j, o, &result.before);
     if (!status)
         status = output_page(o, &result, j->worst);
-    page_free(&result);
     return status;
 }
 
@@ -413,11 +405,8 @@ static int frequencies(const options *o) {
         status = choose(&j, o);
     if (!status)
         status = analyse_all(&j, o);
-    for (size_t i = 0; i < j.count; i++) {
-        free(j.all[i].name);
+    for (size_t i = 0; i < j.count; i++)
         nevh_spectral_samples_free(j.all[i].samples);
-    }
-    free(j.all);
     plan_free(&j.plan);
     return status;
 }

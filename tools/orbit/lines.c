@@ -4,7 +4,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -164,5 +163,4 @@ void lines_close(line_file *l) {
     l->waits = false;
     if (l->name && l->file >= 0)
         close(l->file);
-    free(l->text);
 }

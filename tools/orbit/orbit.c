@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "orbit.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_ORBITS = 16 };
@@ -25,11 +24,9 @@ static void add(orbits *all, const plan *p, const char *integrator,
 static char *name_of(const plan *p, const char *integrator, double dt,
                      bool schemes, bool steps) {
     char *step = text_print("dt = %.4g%s", dt, p->unit);
-    char *name = schemes && steps ? text_print("%s, %s", integrator, step)
-                 : steps          ? text_print("%s", step)
-                                  : text_print("%s", integrator);
-    free(step);
-    return name;
+    return schemes && steps ? text_print("%s, %s", integrator, step)
+           : steps          ? text_print("%s", step)
+                            : text_print("%s", integrator);
 }
 
 orbits orbits_new(const options *o, const plan *p, const char *integrator) {
@@ -50,25 +47,6 @@ orbits orbits_new(const options *o, const plan *p, const char *integrator) {
                 list_add(&all.left_out, name);
     }
     return all;
-}
-
-static void forget(orbit *o) {
-    thinned_free(&o->rows);
-    free(o->q);
-    free(o->p);
-    o->q = o->p = NULL;
-}
-
-void orbit_free(orbit *o) {
-    forget(o);
-    free(o->name);
-}
-
-void orbits_free(orbits *all) {
-    for (size_t i = 0; i < all->count; i++)
-        orbit_free(&all->item[i]);
-    free(all->item);
-    list_free(&all->left_out);
 }
 
 typedef struct {
@@ -96,7 +74,6 @@ int orbit_follow(orbit *o, const row_times *times, size_t columns,
                  orbit_fill *fill, void *data, bool quiet) {
     static const volatile sig_atomic_t no_signal;
     filler f = {o, fill, data};
-    forget(o);
     o->rows = thinned_new(columns + 1);
     o->q = tool_allocate(o->plan.n, sizeof *o->q);
     o->p = tool_allocate(o->plan.n, sizeof *o->p);
@@ -105,7 +82,6 @@ int orbit_follow(orbit *o, const row_times *times, size_t columns,
         trajectory_new(&o->plan, o->integrator, s, times,
                        (row_output){.take = take, .data = &f, .mute = quiet});
     o->status = trajectory_follow(r, &(trajectory_watch){.signal = &no_signal});
-    trajectory_free(r);
     nevh_stepper_free(s);
     return o->status;
 }
@@ -142,7 +118,6 @@ size_t orbit_follow_reference(orbit *o, nevh_reference *r, size_t columns,
     span = fabs(until) < fabs(span) ? until : span;
     stop ends = {.scene = o->plan.scene};
     bool stops = nevh_scene_stops(o->plan.scene);
-    forget(o);
     o->rows = thinned_new(columns + 1);
     o->q = tool_allocate(n, sizeof *o->q);
     o->p = tool_allocate(n, sizeof *o->p);
@@ -162,7 +137,6 @@ size_t orbit_follow_reference(orbit *o, nevh_reference *r, size_t columns,
         step = fmax(step, (1 - part) / (double)(MOST - o->rows.count));
         part = fmin(part + step, 1);
     }
-    free(y);
     return o->rows.count;
 }
 
@@ -223,6 +197,5 @@ double orbit_turns_of(const plan *p) {
         !orbit_follow(&o, &steps, 2 * n, fill_state, &n, true))
         for (size_t k = 0; k < 2 * n && o.rows.part == 1; k++)
             most = fmax(most, orbit_turns(&o, k));
-    orbit_free(&o);
     return most;
 }

@@ -24,8 +24,6 @@ typedef struct {
     list left_out; /* names */
 } orbits;
 orbits orbits_new(const options *, const plan *, const char *integrator);
-void orbits_free(orbits *);
-void orbit_free(orbit *);
 
 /* Writes what is shown of a state. */
 typedef void orbit_fill(void *data, double t, const double q[],
@@ -42,7 +40,7 @@ size_t orbit_follow_reference(orbit *, nevh_reference *, size_t columns,
                               orbit_fill *, void *data);
 /* At the steps, and between them where they are few, so that a curve looks like
    one. */
-row_times orbit_dense_times(const plan *);        /* time: to be freed */
+row_times orbit_dense_times(const plan *);
 const double *orbit_row(const orbit *, size_t i); /* after t */
 /* The number of turns of a column: its passages through the mean, over 2. */
 double orbit_turns(const orbit *, size_t k);

@@ -3,7 +3,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run_plot_private.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_COORDINATES = 4, PHASE_TURNS = 20 };
@@ -23,7 +22,6 @@ static char *pairs_of(const options *o, const plan *p) {
         if (!strchr(name, ':'))
             text_extend(&text, ":p_%s", name);
     }
-    list_free(&names);
     return text;
 }
 
@@ -36,7 +34,6 @@ static int check_pairs(const column_panels *c) {
         if (count[i] != 2)
             status = tool_refuse("--plot-kind phase takes --columns A:B, which "
                                  "draws B over A, or a coordinate alone");
-    free(count);
     return status;
 }
 
@@ -115,10 +112,7 @@ static void draw_panels(plot **to, const run_picture *picture,
         draw_orbit(*to, picture_orbit(picture, i), k, period);
         picture_measured(picture, *to, "measured", c->columns.item[k].name,
                          c->columns.item[k + 1].name, period);
-        free(heading);
     }
-    free(x);
-    free(y);
 }
 
 /* Points are drawn where both columns of a panel were measured. */
@@ -140,16 +134,12 @@ static char *note_text(const run_picture *picture, const char *cut) {
     const plan *p = &picture->plan;
     char *energy = plot_energy_at_start(p), *others = text_print("%s", "");
     if (p->n > MOST_COORDINATES && !picture->options->columns) {
-        free(others);
         others = text_print("; the first %d of %zu coordinates: --columns "
                             "chooses others",
                             MOST_COORDINATES, p->n);
     }
-    char *text = text_print("circle: the start; %s%s%s%s", energy, others,
-                            cut ? "; " : "", cut ? cut : "");
-    free(others);
-    free(energy);
-    return text;
+    return text_print("circle: the start; %s%s%s%s", energy, others,
+                      cut ? "; " : "", cut ? cut : "");
 }
 
 /* True if a column is known of schemes alone. */
@@ -163,7 +153,6 @@ static bool has_shadow(const quantities *c) {
 static void follow(run_picture *picture, column_panels *c) {
     row_times dense = orbit_dense_times(&picture->plan);
     column_panels_follow(picture, &dense, c);
-    free(dense.time);
 }
 
 /* The number of turns of the slowest panel that moves. */
@@ -186,7 +175,7 @@ static double turns_wanted(const orbit *o, double turns) {
 }
 
 /* A curve that does not close would fill an area: its run is cut.
-   returns  what is to be said of it; to be freed */
+   returns  what is to be said of it */
 static char *follow_and_cut(run_picture *picture, column_panels *c) {
     const plan *p = &picture->plan;
     bool closes =
@@ -215,12 +204,8 @@ plot *plot_phase(run_picture *picture) {
             draw_panels(&to, picture, &c, i);
         plot_columns(to, c.panels > 1 ? picture_columns(picture)
                                       : picture_across(picture));
-        char *more = note_text(picture, cut);
-        picture_note(picture, to, more);
-        free(more);
-        free(cut);
+        picture_note(picture, to, note_text(picture, cut));
     }
     column_panels_free(&c);
-    free(names);
     return to;
 }

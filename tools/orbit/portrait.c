@@ -74,9 +74,8 @@ static void run_orbits(portrait_job *j, orbits_of *o) {
         nevh_stepper_reset(s);
         if (plan_run_from(p, s, &q, &m, &observer, 1, &stopped) &&
             !o->failed++) {
-            char *why = why_of(j, o, nevh_stepper_message(s));
-            o->status = text_print("failed: %s", why);
-            free(why);
+            o->status =
+                text_print("failed: %s", why_of(j, o, nevh_stepper_message(s)));
         }
     }
     nevh_stepper_free(s);
@@ -163,14 +162,13 @@ static size_t choose_levels(const portrait_job *j, double energy[MOST_LEVELS]) {
         lowest = fmin(lowest, j->levels.found[i].energy);
     for (int i = 1; count == 1 && i <= 12; i++)
         energy[chosen++] = lowest + (all[0] - lowest) * (i / 8.0) * (i / 8.0);
-    free(all);
     return chosen;
 }
 
 static size_t orbit_series(const portrait_job *j, const orbits_of *o,
                            size_t member, plot *to) {
-    char *name = members_start(&j->members, &j->plan, member);
-    size_t series = plot_series(to, name);
+    size_t series =
+        plot_series(to, members_start(&j->members, &j->plan, member));
     if (j->members.count > 1)
         plot_member(to, series, member, j->members.count);
     else {
@@ -178,7 +176,6 @@ static size_t orbit_series(const portrait_job *j, const orbits_of *o,
         plot_integrator(to, series, o->integrator);
         plot_size(to, series, 0.6);
     }
-    free(name);
     return series;
 }
 
@@ -257,11 +254,7 @@ static plot *draw_plane(portrait_job *j) {
         levels_draw(&j->levels, to, energy, count);
         draw_orbits(j, o, to);
         draw_measured(j, to);
-        free(heading);
     }
-    free(momentum);
-    free(x);
-    free(y);
     return to;
 }
 
@@ -317,12 +310,10 @@ static int read_data(portrait_job *j, const options *o) {
     j->x = measured_find(&j->data, nevh_scene_coordinate(j->plan.scene, 0));
     j->p_x = measured_find(&j->data, momentum);
     bool both = j->x < j->data.columns && j->p_x < j->data.columns;
-    int status = both ? TOOL_OK
-                      : tool_refuse("--data %s: a portrait takes columns %s "
-                                    "and %s",
-                                    o->fit.data, momentum + 2, momentum);
-    free(momentum);
-    return status;
+    return both ? TOOL_OK
+                : tool_refuse("--data %s: a portrait takes columns %s "
+                              "and %s",
+                              o->fit.data, momentum + 2, momentum);
 }
 
 /* True if it is an equilibrium found before, shifted by a period. */
@@ -388,7 +379,6 @@ static int draw(portrait_job *j, const options *o) {
     plot *to = NULL;
     int status = j->plan.n == 1 ? run_plane(j, &to, o) : run_section(j, &to, o);
     if (status == TOOL_USAGE) {
-        plot_free(to);
         return status;
     }
     char *more = j->plan.n == 1
@@ -399,9 +389,7 @@ static int draw(portrait_job *j, const options *o) {
                                   j->plan.unit, j->members.count,
                                   j->members.count == 1 ? "" : "s");
     plot_note_run(to, &j->plan, NULL, more);
-    free(more);
     int drawn = plot_write(to, o);
-    plot_free(to);
     if (!drawn)
         print_notes(j, o);
     print_failures(j);
@@ -424,15 +412,7 @@ static int portrait(const options *o) {
         status = plot_check(o);
     if (!status)
         status = draw(&j, o);
-    for (size_t i = 0; i < j.count; i++) {
-        free(j.of[i].points);
-        free(j.of[i].member);
-        free(j.of[i].status);
-    }
-    free(j.of);
     levels_free(&j.levels);
-    members_free(&j.members);
-    measured_free(&j.data);
     plan_free(&j.plan);
     return status;
 }

@@ -298,5 +298,4 @@ void levels_find_equilibria(levels *l) {
         qsort(l->found, l->count, sizeof *l->found, by_distance);
     l->many = l->count == MOST_EQUILIBRIA;
     thin_curve(l);
-    free(s.f);
 }

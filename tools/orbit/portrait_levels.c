@@ -42,8 +42,6 @@ int levels_new(levels *l, const plan *p, portrait_window w) {
 
 void levels_free(levels *l) {
     nevh_field_free(l->field);
-    free(l->h);
-    free(l->found);
 }
 
 /* Curves. */
@@ -117,7 +115,7 @@ static void draw_level(const levels *l, plot *to, size_t series, double level) {
         for (size_t i = 0; i < EDGES; i++)
             if (all[i].count == count)
                 draw_curve(all, i, to, series);
-    free(all);
+    tool_release(all);
 }
 
 static void draw_equilibria(const levels *l, plot *to) {

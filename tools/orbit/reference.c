@@ -38,16 +38,12 @@ static char *name_of(const plan *p, size_t k) {
                       nevh_scene_coordinate(p->scene, k % p->n));
 }
 
-static void put_text(table *t, char *text) {
-    table_text(t, text);
-    free(text);
-}
-
 /* As many digits as tell the time from others. */
 static char *time_text(moment at) {
     char text[NUMBER_SIZE];
-    return at.rest == 0 ? text_print("%s", number_text(text, at.time))
-                        : tool_owned(nevh_certain_number(at.time, at.rest));
+    return at.rest == 0
+               ? text_print("%s", number_text(text, at.time))
+               : text_adopt(tool_owned(nevh_certain_number(at.time, at.rest)));
 }
 
 static void put_state(reference_job *j, moment at, table *rows) {
@@ -56,10 +52,11 @@ static void put_state(reference_job *j, moment at, table *rows) {
         size_t digits = (size_t)nevh_certain_digits(j->orbit, k);
         double error = nevh_certain_error(j->orbit, k);
         bool still = nevh_certain_value(j->orbit, k) == 0 && error < 1e-30;
-        put_text(rows, time_text(at));
-        put_text(rows, name_of(j->plan, k));
+        table_text(rows, time_text(at));
+        table_text(rows, name_of(j->plan, k));
         if (digits || still)
-            put_text(rows, tool_owned(nevh_certain_text(j->orbit, k)));
+            table_text(rows,
+                       text_adopt(tool_owned(nevh_certain_text(j->orbit, k))));
         else
             table_text(rows, NULL);
         table_shown(rows, "%zu", digits);
@@ -272,8 +269,6 @@ static int reference_of(const options *o, const plan *p) {
         status = output_page(o, &result, status);
     }
     nevh_certain_free(j.orbit);
-    free(j.moments);
-    page_free(&result);
     return status;
 }
 

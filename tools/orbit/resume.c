@@ -9,7 +9,6 @@
 #include <limits.h>
 #include <math.h>
 #include <nevh/body.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -77,21 +76,21 @@ int state_save(const char *name, const char *settings, const run_state *s,
         status = tool_refuse("%s cannot be written: %s", name, strerror(errno));
         unlink(next);
     }
-    free(next);
-    free(all);
+    tool_release(all);
+    tool_release(next);
     return status;
 }
 
-/* All of a file, freed by the caller; NULL when it cannot be read. */
+/* All of a file; NULL when it cannot be read. */
 static char *read_all(const char *name, size_t *size) {
     size_t capacity = 1 << 12, count;
     FILE *file = regular_open(name);
-    char *all = file ? malloc(capacity) : NULL;
+    char *all = file ? tool_allocate(capacity, 1) : NULL;
     *size = 0;
     while (all && (count = fread(all + *size, 1, capacity - *size, file)) > 0) {
         *size += count;
         if (*size == capacity)
-            all = realloc(all, capacity *= 2);
+            all = tool_enlarge(all, capacity *= 2, 1);
     }
     if (file)
         fclose(file);
@@ -153,7 +152,6 @@ uint64_t state_digits(bool portable) {
         take_vectors(x, y);
         digest = digest_add(digest, y, bytes);
     }
-    free(x);
     return digest;
 }
 
@@ -193,7 +191,6 @@ static int take(const char *name, const char *all, const char *settings,
     char *saved =
         text_print("%.*s", (int)h.settings_size, memory + h.memory_size);
     int status = compare_settings(name, saved, settings);
-    free(saved);
     if (!status && (h.n != s->n || h.memory_size != s->memory_size))
         status = tool_refuse("%s belongs to another version of nevh", name);
     if (status)
@@ -220,7 +217,6 @@ int state_load(const char *name, const char *settings, run_state *s) {
         status = tool_refuse("%s is damaged, or no state of a run", name);
     else
         status = take(name, all, settings, s);
-    free(all);
     return status;
 }
 

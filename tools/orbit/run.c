@@ -7,7 +7,6 @@
 #include "trajectory.h"
 #include <math.h>
 #include <signal.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -159,7 +158,7 @@ static char *describe(const run_job *j) {
     char *times = text_print("%s", "");
     for (size_t i = 0; j->rows.by == BY_TIMES && i < j->rows.count; i++)
         text_extend(&times, " %.17g", j->rows.time[i]);
-    char *all = text_print(
+    return text_print(
         "nevh = %s\nscene = %016llx\nintegrator = %s\ndt = %.17g\n"
         "t_end = %.17g\ngradient = %s\ngradient step = %.17g\n"
         "tolerance = %.17g\nportable = %s\ntransform = %s\n"
@@ -170,8 +169,6 @@ static char *describe(const run_job *j) {
         p->portable ? "yes" : "no",
         p->run->transform ? p->run->transform : "none",
         (unsigned long long)state_digits(p->portable), j->rows_text, times);
-    free(times);
-    return all;
 }
 
 /* Saving. */
@@ -261,7 +258,6 @@ static int write_lines(run_job *j) {
     residuals_words(&j->residuals, &j->plan, &words);
     for (size_t i = 0; !j->options->quiet && i < words.count; i++)
         lines_comment(&j->lines, words.item[i]);
-    list_free(&words);
     if (status == TOOL_USAGE || lines_flush(&j->lines))
         return TOOL_USAGE;
     if (j->state)
@@ -295,10 +291,7 @@ static int write_rows(run_job *j) {
                                     .more = residual_columns(j),
                                     .quiet = o->quiet});
     note(j);
-    int status = pages ? write_page(j, &result) : write_lines(j);
-    trajectory_free(j->trajectory);
-    page_free(&result);
-    return status;
+    return pages ? write_page(j, &result) : write_lines(j);
 }
 
 static int run_rows(run_job *j) {
@@ -330,15 +323,8 @@ static int run_scene(const options *o) {
         plan_native_report(j.stepper); /* of a compiler in the background */
     nevh_stepper_free(j.stepper);
     residuals_end(&j.residuals);
-    measured_free(&j.data);
-    list_free(&j.more.titles);
     plan_free(&j.plan);
     lines_close(&j.lines);
-    list_free(&j.notes);
-    free(j.rows_text);
-    free(j.state);
-    free(j.words);
-    free(j.settings);
     return status;
 }
 

@@ -38,7 +38,6 @@ static void draw_energy(plot *to, const run_picture *picture, double turns,
                     trace.envelope);
     nevh_energy_free(energy);
     nevh_stepper_free(s);
-    free(trace.envelope);
 }
 
 plot *plot_energy(run_picture *picture) {
@@ -46,8 +45,6 @@ plot *plot_energy(run_picture *picture) {
     plot *to = energy_plot_new(&picture->plan, picture->plan.title, NULL);
     for (size_t i = 0; i < picture->orbits.count; i++)
         draw_energy(to, picture, turns, &picture->orbits.item[i]);
-    char *more = energy_plot_words(&picture->plan, turns);
-    picture_note(picture, to, more);
-    free(more);
+    picture_note(picture, to, energy_plot_words(&picture->plan, turns));
     return to;
 }

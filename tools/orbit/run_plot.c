@@ -3,7 +3,6 @@
 #include "experiment/row.h"
 #include "run_plot_private.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Columns. */
@@ -21,7 +20,6 @@ static int read_panel(column_panels *c, const char *names) {
         rest = colon ? colon + 1 : NULL;
     }
     c->panels++;
-    free(copy);
     return status;
 }
 
@@ -34,13 +32,11 @@ int column_panels_read(column_panels *c, const plan *p, const char *text) {
                              tool_allocate(strlen(text) + 1, sizeof(size_t))};
     for (size_t i = 0; !status && i < panels.count; i++)
         status = read_panel(c, panels.item[i]);
-    list_free(&panels);
     return status;
 }
 
 void column_panels_free(column_panels *c) {
     columns_free(&c->columns);
-    free(c->panel);
 }
 
 /* An orbit_fill; data are column_panels. */
@@ -243,9 +239,6 @@ void picture_note(const run_picture *picture, plot *to, const char *more) {
                             *others && *more ? "; " : "");
     text_extend(&text, "%s", more);
     plot_note_run(to, &picture->plan, scheme, text);
-    free(text);
-    free(others);
-    free(scheme);
 }
 
 /* Kinds. */
@@ -313,13 +306,7 @@ int run_plot(const options *o, const plan *p, const char *integrator,
                             points_of(&picture));
         status = worst_status(&picture);
     }
-    plot_free(to);
     if (picture.plan.reference != p->reference)
         nevh_reference_free(picture.plan.reference);
-    if (picture.plan.no_reference != p->no_reference)
-        free(picture.plan.no_reference);
-    orbits_free(&picture.orbits);
-    orbit_free(&picture.reference);
-    measured_free(&picture.data);
     return status;
 }

@@ -45,7 +45,7 @@ int column_panels_follow(run_picture *, const row_times *, column_panels *);
 int column_panels_check(const run_picture *, column_panels *);
 /* Ends a run that goes round often after about so many turns, unless its length
    was asked for; it is to be followed again then.
-   returns  what is to be said of it, to be freed; NULL: it stays */
+   returns  what is to be said of it; NULL: it stays */
 enum { PICTURE_TURNS = 12 };
 char *picture_cut(run_picture *, double turns, double wanted);
 /* Title, and the note with what is said of orbits, and more; a plot is made
@@ -53,7 +53,7 @@ char *picture_cut(run_picture *, double turns, double wanted);
 void picture_note(const run_picture *, plot *, const char *more);
 /* The number of panels side by side. */
 size_t picture_across(const run_picture *);
-/* Which orbits ended early, and when, or ""; to be freed. */
+/* Which orbits ended early, and when, or "". */
 char *picture_early(const run_picture *);
 
 /* Finds the orbit of the reference, to which all are compared: exact, by Taylor series
@@ -64,7 +64,7 @@ bool column_panels_refer(run_picture *, column_panels *);
 /* A panel each: the reference first, if there is one. */
 size_t picture_columns(const run_picture *);
 const orbit *picture_orbit(const run_picture *, size_t column);
-/* "exact solution", "verlet, ended at t = 3"; to be freed. */
+/* "exact solution", "verlet, ended at t = 3". */
 char *picture_heading(const run_picture *, size_t column);
 
 /* The range of these columns: that of the reference, or else of the first orbit, and of

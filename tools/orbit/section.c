@@ -48,11 +48,8 @@ static double *new_point(series *s) {
     size_t width = 2 + s->decl->items;
     if (s->points == s->capacity) {
         s->capacity = s->capacity ? 2 * s->capacity : 64;
-        double *more = tool_allocate(s->capacity * width, sizeof *more);
-        if (s->points)
-            memcpy(more, s->numbers, s->points * width * sizeof *more);
-        free(s->numbers);
-        s->numbers = more;
+        s->numbers =
+            tool_enlarge(s->numbers, s->capacity * width, sizeof *s->numbers);
         s->members = tool_enlarge(s->members, s->capacity, sizeof *s->members);
     }
     return s->numbers + width * s->points++;
@@ -117,7 +114,6 @@ static int check_names(const plan *p, const list *names) {
         status = tool_refuse("%s: the scene has no [sections], as: swing = "
                              "when phi = 0, rising: phi, p_phi",
                              p->name);
-    list_free(&known);
     return status;
 }
 
@@ -148,18 +144,6 @@ static int choose(section_job *j, const plan *p, const options *o) {
     return TOOL_OK;
 }
 
-static void forget(section_job *j) {
-    for (size_t i = 0; i < j->count; i++) {
-        free(j->all[i].periods);
-        free(j->all[i].numbers);
-        free(j->all[i].members);
-    }
-    members_free(&j->members);
-    list_free(&j->starts);
-    free(j->all);
-    free(j->ended);
-}
-
 static nevh_sections *watch(section_job *j, const nevh_stepper *s) {
     nevh_section *decl = tool_allocate(j->count, sizeof *decl);
     for (size_t i = 0; i < j->count; i++) {
@@ -172,9 +156,7 @@ static nevh_sections *watch(section_job *j, const nevh_stepper *s) {
                                        .direction = from->direction,
                                        .period = from->period};
     }
-    nevh_sections *x = nevh_sections_new(s, decl, j->count, keep, j);
-    free(decl);
-    return x;
+    return nevh_sections_new(s, decl, j->count, keep, j);
 }
 
 /* Explains the end of a run; of several runs that ended early only the first. */
@@ -189,10 +171,8 @@ static int explain(section_job *j, int status, const nevh_stepper *s,
                        ? NULL
                        : plan_doubts(j->plan, energy, status);
     if (doubts) {
-        free(j->ended);
         j->ended = text_print("warning: %s", doubts);
         tool_refuse("%s: %s", j->plan->name, j->ended);
-        free(doubts);
     }
     if (!status)
         return TOOL_OK;
@@ -203,11 +183,9 @@ static int explain(section_job *j, int status, const nevh_stepper *s,
     char *known = j->members.several
                       ? member_why(j->plan, j->members.number[j->at], why)
                       : plan_why(j->plan, why);
-    free(j->ended);
     j->ended = j->members.several ? text_print("member %zu failed: %s",
                                                j->members.number[j->at], known)
                                   : text_print("failed: %s", known);
-    free(known);
     tool_refuse("%s: %s %s", j->plan->name, j->integrator, j->ended);
     return TOOL_FAILED;
 }
@@ -236,7 +214,6 @@ static void name_starts(section_job *j) {
         char *name = members_start(&j->members, j->plan, i);
         if (name)
             list_add(&j->starts, name);
-        free(name);
     }
 }
 
@@ -293,7 +270,7 @@ static char *crossing_text(const nevh_scene_section *decl, double *at) {
     return text_print("%s - (%s)", decl->left, decl->right);
 }
 
-/* Why there are no points; to be freed. */
+/* Why there are no points. */
 static char *reason(const section_job *j, const series *s) {
     const nevh_scene_section *decl = s->decl;
     const char *unit =
@@ -305,14 +282,12 @@ static char *reason(const section_job *j, const series *s) {
         return text_print("no step was taken");
     char *what = crossing_text(decl, &at);
     bool passes = s->low < 0 && s->high > 0;
-    char *text =
-        text_print("%s stays in %.3g ... %.3g%s%s%s", what, s->low + at,
-                   s->high + at, *unit ? " " : "", unit,
-                   passes && decl->direction > 0   ? " and does not rise there"
-                   : passes && decl->direction < 0 ? " and does not fall there"
-                                                   : "");
-    free(what);
-    return text;
+    return text_print("%s stays in %.3g ... %.3g%s%s%s", what, s->low + at,
+                      s->high + at, *unit ? " " : "", unit,
+                      passes && decl->direction > 0 ? " and does not rise there"
+                      : passes && decl->direction < 0
+                          ? " and does not fall there"
+                          : "");
 }
 
 static void note_points(const section_job *j, const series *s, list *notes) {
@@ -322,8 +297,6 @@ static void note_points(const section_job *j, const series *s, list *notes) {
         part ? text_print(" after t = %g", j->after) : text_print("%s", "");
     list_print(notes, "section %s: %zu points%s%s%s", s->decl->name, s->points,
                from, why ? ": " : "", why ? why : "");
-    free(from);
-    free(why);
 }
 
 static void note(const section_job *j, const options *o, list *notes) {
@@ -347,7 +320,6 @@ static int refuse_empty(const section_job *j) {
         note_points(j, &j->all[i], &reasons);
     for (size_t i = 0; i < reasons.count; i++)
         tool_refuse("nothing to plot: %s", reasons.item[i]);
-    list_free(&reasons);
     return TOOL_USAGE;
 }
 
@@ -368,11 +340,7 @@ static void add_note(const section_job *j, plot *to) {
                      : text_print("%s", "");
     char *more = text_print("%s%s%s%s", energy, from, j->ended ? "; " : "",
                             j->ended ? j->ended : "");
-    free(from);
     plot_note_run(to, j->plan, scheme, more);
-    free(scheme);
-    free(energy);
-    free(more);
 }
 
 static void draw_series(const section_job *j, const series *s, plot **to,
@@ -390,7 +358,6 @@ static int draw(const section_job *j, const options *o, int status) {
         draw_series(j, &j->all[i], &to, NULL);
     add_note(j, to);
     int drawn = plot_write(to, o);
-    plot_free(to);
     if (!drawn)
         plot_written_report(o, j->plan, j->integrator, count_points(j));
     return drawn ? drawn : status;
@@ -420,8 +387,6 @@ static int print(const section_job *j, const options *o, int status) {
         table_column(result.table, "member");
     fill(result.table, j, &items);
     status = output_page(&as, &result, status);
-    list_free(&items);
-    page_free(&result);
     return status;
 }
 
@@ -452,7 +417,6 @@ int section_panel(plot **to, const plan *p, const options *o,
     if (*to)
         plot_same_ranges(*to, 1.5); /* a scheme that diverges has its own */
     nevh_stepper_free(s);
-    forget(&j);
     return status;
 }
 
@@ -475,7 +439,6 @@ static int section(const options *o) {
     if (!status)
         status = show(&j, o, run(&j, s));
     nevh_stepper_free(s);
-    forget(&j);
     plan_free(&p);
     return status;
 }

@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot/plot.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* One of the numbers of all points. */
@@ -23,7 +22,6 @@ static double find_begin(const column *c) {
     for (size_t k = 1; k < c->points; k++)
         if (sorted[k] - sorted[k - 1] > c->period / 2)
             begin = (sorted[k] + sorted[k - 1]) / 2;
-    free(sorted);
     return begin;
 }
 
@@ -64,7 +62,7 @@ static size_t new_series(plot *to, const char *name, plot_form form,
     return series;
 }
 
-/* "swing: phi1 = 0, rising"; to be freed. */
+/* "swing: phi1 = 0, rising". */
 static char *plane_of(const plan *p, const nevh_scene_section *decl) {
     if (decl->every > 0)
         return text_print("%s: every %.6g%s", decl->name, decl->every, p->unit);
@@ -80,16 +78,12 @@ static void add_panel(plot **to, const plan *p, const nevh_scene_section *decl,
     char *plane = plane_of(p, decl);
     char *heading =
         text_print(points ? "%s" : "%s; no points", own ? own : plane);
-    free(plane);
     char *x = plot_label(p, across, across), *y = plot_label(p, up, up);
     if (!*to) {
         *to = plot_new(p->title, x, y);
         plot_heading(*to, heading);
     } else
         plot_panel(*to, heading, x, y);
-    free(heading);
-    free(x);
-    free(y);
 }
 
 /* A series an orbit. */

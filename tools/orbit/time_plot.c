@@ -3,8 +3,6 @@
 #include "experiment/row.h"
 #include "run_plot_private.h"
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { MOST_PANELS = 9, FEW_ROWS = 80 };
 
@@ -54,11 +52,10 @@ static double most_turns(const orbit *o, const quantities *c) {
 static void follow(run_picture *picture, column_panels *c) {
     row_times dense = orbit_dense_times(&picture->plan);
     column_panels_follow(picture, picture->rows ? picture->rows : &dense, c);
-    free(dense.time);
 }
 
 /* A run that goes round so often that a curve would be a band is cut.
-   returns  what is to be said of it; to be freed */
+   returns  what is to be said of it */
 static char *follow_and_cut(run_picture *picture, column_panels *c) {
     follow(picture, c);
     char *words =
@@ -187,7 +184,6 @@ static char *panel_label(const run_picture *picture, const column_panels *c,
                 : column_label(&picture->plan, what);
         text_extend(&text, "%s%s%s", text ? ", " : "", label,
                     several && place < 5 ? dashes[place] : "");
-        free(label);
     }
     return text;
 }
@@ -231,10 +227,7 @@ static void draw_panel(plot **to, run_picture *picture, column_panels *c,
                                : text_print("measured");
         if (c->panel[k] == panel)
             picture_measured(picture, *to, name, NULL, column, 0);
-        free(name);
     }
-    free(x);
-    free(y);
 }
 
 plot *plot_time(run_picture *picture) {
@@ -259,11 +252,8 @@ plot *plot_time(run_picture *picture) {
         plot_stack(to);
         char *early = picture_early(picture);
         text_extend(&more, "%s%s", *more && *early ? "; " : "", early);
-        free(early);
         picture_note(picture, to, more);
-        free(more);
     }
     column_panels_free(&c);
-    free(names);
     return to;
 }

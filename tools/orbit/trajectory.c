@@ -5,7 +5,6 @@
 #include <float.h>
 #include <math.h>
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -75,15 +74,6 @@ trajectory *trajectory_new(const plan *p, const char *integrator,
     return r;
 }
 
-void trajectory_free(trajectory *r) {
-    free(r->now.memory);
-    free(r->now.q);
-    free(r->now.p);
-    free(r->observed);
-    free(r->more);
-    free(r);
-}
-
 /* Cells. */
 
 static void add_title(trajectory *r, const char *prefix, const char *name) {
@@ -92,7 +82,6 @@ static void add_title(trajectory *r, const char *prefix, const char *name) {
         table_column(r->to.page->table, title);
     else
         lines_print(r->to.lines, "%s,", title);
-    free(title);
 }
 
 static size_t more_count(const trajectory *r) {
@@ -181,7 +170,6 @@ static int failed(trajectory *r, double t, const char *message) {
     if (!r->to.mute)
         tool_refuse("%s: %s failed after t = %.9g: %s", r->plan->name,
                     r->integrator, t, why);
-    free(why);
     return TOOL_FAILED;
 }
 
@@ -204,7 +192,6 @@ static void doubt(trajectory *r) {
     conserved_warn(p, &changed);
     for (size_t i = 0; i < changed.count; i++)
         warn(r, changed.item[i]);
-    list_free(&changed);
     bool suspect = !p->balance && r->changed > large * scale;
     char *why = suspect && shorter
                     ? plan_doubts_again(p, r->integrator, p->dt[0])
@@ -216,7 +203,6 @@ static void doubt(trajectory *r) {
                          r->changed / scale);
     if (why)
         warn(r, why);
-    free(why);
 }
 
 /* When rows are due. */

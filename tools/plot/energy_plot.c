@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "energy_plot.h"
 #include <math.h>
-#include <stdlib.h>
 
 static const double absurd = 100;     /* of an error relative to the energy */
 static const double least_range = 30; /* a level error is a level line */
@@ -41,11 +40,9 @@ char *energy_plot_words(const plan *p, double turns) {
     double bin = (p->t_end - p->run->t_start) / (double)points_of(turns);
     char *scale = text_print("errors relative to %.4g%s", plan_energy_scale(p),
                              p->energy_unit);
-    char *text = has_bins(p) ? text_print("%s, the largest in each %.2g%s%s",
-                                          scale, bin, *time ? " " : "", time)
-                             : text_print("%s", scale);
-    free(scale);
-    return text;
+    return has_bins(p) ? text_print("%s, the largest in each %.2g%s%s", scale,
+                                    bin, *time ? " " : "", time)
+                       : text_print("%s", scale);
 }
 
 static void set_axes(plot *to, const plan *p) {
@@ -56,19 +53,15 @@ static void set_axes(plot *to, const plan *p) {
 }
 
 plot *energy_plot_new(const plan *p, const char *title, const char *heading) {
-    char *x = plot_label(p, "t", "t");
-    plot *to = plot_new(title, x, quantity(p));
+    plot *to = plot_new(title, plot_label(p, "t", "t"), quantity(p));
     plot_heading(to, heading);
     set_axes(to, p);
-    free(x);
     return to;
 }
 
 void energy_plot_panel(plot *to, const plan *p, const char *heading) {
-    char *x = plot_label(p, "t", "t");
-    plot_panel(to, heading, x, quantity(p));
+    plot_panel(to, heading, plot_label(p, "t", "t"), quantity(p));
     set_axes(to, p);
-    free(x);
 }
 
 /* Says where a line leaves the panel, and how far it goes. */
@@ -81,11 +74,10 @@ static void add_exit(plot *to, const char *integrator, const envelope *e) {
     }
     if (isnan(left))
         return;
-    char *name = text_print("\u2191 %s: up to %.0e", integrator, most);
-    size_t series = plot_series(to, name);
+    size_t series =
+        plot_series(to, text_print("\u2191 %s: up to %.0e", integrator, most));
     plot_style(to, series, PLOT_GUIDE);
     plot_point(to, series, left, absurd / 2);
-    free(name);
 }
 
 /* True if a bin begins after so many parts: a rest that is shorter belongs to the last. */

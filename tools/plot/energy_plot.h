@@ -9,7 +9,7 @@
 /* A plot, or one more panel. */
 plot *energy_plot_new(const plan *, const char *title, const char *heading);
 void energy_plot_panel(plot *, const plan *, const char *heading);
-/* The scale of the errors, and the steps per point, in words; to be freed.
+/* The scale of the errors, and the steps per point, in words.
    turns  of the motion in the run; 0: not known */
 char *energy_plot_words(const plan *, double turns);
 /* The name of an axis of largest errors. */

@@ -3,7 +3,6 @@
 #include "looks.h"
 #include "plot_private.h"
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const char *const looks[] = {
@@ -22,10 +21,9 @@ static size_t number_of(const char *name, size_t length) {
 
 size_t plot_look_of_integrator(const char *name) {
     size_t length = strcspn(name, "+"); /* of verlet+transform */
-    char *plain = text_print("%.*s", (int)length, name);
-    const nevh_integrator *known = nevh_integrator_named(plain);
+    const nevh_integrator *known =
+        nevh_integrator_named(text_print("%.*s", (int)length, name));
     size_t look = 0;
-    free(plain);
     for (; known && look < LOOKS; look++)
         if (strcmp(looks[look], nevh_integrator_name(known)) == 0)
             return look;

@@ -4,7 +4,6 @@
 #include "order_plot.h"
 #include "energy_plot.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double useless = 1, rounding = 1e-13; /* as errors */
@@ -53,7 +52,6 @@ void order_plot_steps(const options *o, plan *p) {
     double longest = p->dt[0];
     for (size_t i = 1; i < p->dts; i++)
         longest = fmax(longest, p->dt[i]);
-    free(p->given_dt);
     p->given_dt = tool_allocate(ORDER_STEPS, sizeof *p->given_dt);
     for (int i = 0; i < ORDER_STEPS; i++)
         p->given_dt[i] = ldexp(longest, -i);
@@ -205,11 +203,6 @@ static curve curve_of(const rows_drawn *d, size_t first, error_of *error) {
     return c;
 }
 
-static void free_curve(curve *c) {
-    free(c->x);
-    free(c->error);
-}
-
 /* The kinds of errors that some scheme has at two steps. */
 static size_t find_kinds(const rows_drawn *d, size_t kinds[]) {
     size_t found = 0;
@@ -218,7 +211,6 @@ static size_t find_kinds(const rows_drawn *d, size_t kinds[]) {
         for (size_t i = 0; i < d->count && !drawn; i++) {
             curve c = curve_of(d, i, errors[k].of);
             drawn = is_first(d->row, i) && c.count > 1;
-            free_curve(&c);
         }
         if (drawn)
             kinds[found++] = k;
@@ -242,7 +234,6 @@ static char *name_of(const plan *p, const row *r, const curve curves[],
         char *more = curves[k].slope > 0
                          ? text_print("%s%s%.2f", name, before, curves[k].slope)
                          : text_print("%s%s-", name, before);
-        free(name);
         name = more;
     }
     return name;
@@ -275,11 +266,8 @@ static void draw_panel(plot *to, const plan *p, const rows_drawn *d,
             continue;
         for (size_t k = 0; k < panels; k++)
             curves[k] = curve_of(d, i, errors[kinds[k]].of);
-        char *name = name_of(p, &d->row[i], curves, panels);
-        draw_curve(to, name, d->row[i].integrator, &curves[panel]);
-        free(name);
-        for (size_t k = 0; k < panels; k++)
-            free_curve(&curves[k]);
+        draw_curve(to, name_of(p, &d->row[i], curves, panels),
+                   d->row[i].integrator, &curves[panel]);
     }
 }
 
@@ -299,7 +287,6 @@ static void add_note(plot *to, const plan *p, const rows_drawn *d) {
              : "a slope needs five steps: --dt",
         adaptive ? "; schemes that choose their steps are left out" : "");
     plot_note_run(to, p, NULL, text);
-    free(text);
 }
 
 int order_plot(const options *o, const plan *p, const row rows[], size_t count,
@@ -320,9 +307,6 @@ int order_plot(const options *o, const plan *p, const row rows[], size_t count,
         plot_log(to, true, true);
         draw_panel(to, p, &d, kinds, panels, k);
     }
-    free(x);
     add_note(to, p, &d);
-    int status = plot_write(to, o);
-    plot_free(to);
-    return status;
+    return plot_write(to, o);
 }

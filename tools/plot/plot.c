@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot_private.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* gnuplot computes with ranges. */
@@ -10,15 +9,6 @@ static const double largest = 1e300, smallest = 1e-300;
 
 static char *copy(const char *text) {
     return text ? text_print("%s", text) : NULL;
-}
-
-/* An array, to which one is to be added. */
-static void *grown(void *items, size_t count, size_t size) {
-    void *more = tool_allocate(count + 1, size);
-    if (count)
-        memcpy(more, items, count * size);
-    free(items);
-    return more;
 }
 
 plot *plot_new(const char *title, const char *x, const char *y) {
@@ -29,7 +19,7 @@ plot *plot_new(const char *title, const char *x, const char *y) {
 }
 
 void plot_panel(plot *p, const char *heading, const char *x, const char *y) {
-    p->panel = grown(p->panel, p->panels, sizeof *p->panel);
+    p->panel = tool_enlarge(p->panel, p->panels + 1, sizeof *p->panel);
     p->panel[p->panels++] = (panel){.heading = copy(heading),
                                     .x = copy(x),
                                     .y = copy(y),
@@ -39,7 +29,6 @@ void plot_panel(plot *p, const char *heading, const char *x, const char *y) {
 }
 
 void plot_note(plot *p, const char *text) {
-    free(p->note);
     p->note = copy(text);
 }
 
@@ -48,7 +37,6 @@ static panel *current(const plot *p) {
 }
 
 void plot_heading(plot *p, const char *text) {
-    free(current(p)->heading);
     current(p)->heading = copy(text);
 }
 
@@ -96,10 +84,8 @@ void plot_map(plot *p, size_t columns, const double x[], size_t rows,
                     r.high + fmax(fabs(r.high), 1) / 2};
     p->map.shown = r;
     plot_map_rank(&p->map);
-    if (p->map.ranked) {
-        free(p->map.label);
+    if (p->map.ranked)
         p->map.label = text_print("%s, by rank", label ? label : "");
-    }
 }
 
 void plot_then(plot *p, plot *next) {
@@ -148,7 +134,7 @@ static size_t find_look(const plot *p, const char *name) {
 
 size_t plot_series(plot *p, const char *name) {
     size_t look = find_look(p, name);
-    p->series = grown(p->series, p->count, sizeof *p->series);
+    p->series = tool_enlarge(p->series, p->count + 1, sizeof *p->series);
     p->series[p->count] = (series){
         .name = copy(name), .panel = p->panels - 1, .look = look, .size = 1};
     return p->count++;
@@ -214,11 +200,7 @@ void plot_member(plot *p, size_t number, size_t member, size_t members) {
 static void add(series *s, pair point) {
     if (s->count == s->capacity) {
         s->capacity = 2 * s->capacity + 64;
-        pair *more = tool_allocate(s->capacity, sizeof *more);
-        if (s->count)
-            memcpy(more, s->point, s->count * sizeof *more);
-        free(s->point);
-        s->point = more;
+        s->point = tool_enlarge(s->point, s->capacity, sizeof *s->point);
     }
     s->point[s->count++] = point;
 }
@@ -241,28 +223,4 @@ void plot_point(plot *p, size_t number, double x, double y) {
         add(s, (pair){x, y});
     else
         p->hidden++;
-}
-
-void plot_free(plot *p) {
-    for (size_t i = 0; p && i < p->panels; i++) {
-        free(p->panel[i].heading);
-        free(p->panel[i].x);
-        free(p->panel[i].y);
-    }
-    for (size_t i = 0; p && i < p->count; i++) {
-        free(p->series[i].name);
-        free(p->series[i].point);
-    }
-    if (!p)
-        return;
-    plot_free(p->next);
-    free(p->map.x);
-    free(p->map.y);
-    free(p->map.z);
-    free(p->map.label);
-    free(p->title);
-    free(p->note);
-    free(p->panel);
-    free(p->series);
-    free(p);
 }

@@ -38,7 +38,6 @@ typedef enum {
 /* A plot of one panel, the current one.  Labels come with their units; texts
    are copied, and NULL is none. */
 plot *plot_new(const char *title, const char *x, const char *y);
-void plot_free(plot *); /* NULL is allowed */
 /* Smaller, below the title: what was run, and how to read the picture. */
 void plot_note(plot *, const char *text);
 /* Adds a panel and makes it the current one. */
@@ -95,16 +94,15 @@ void plot_break(plot *, size_t series); /* the line ends */
 /* plot_words.c */
 /* "NAME (UNIT)", or "NAME, BODY (UNIT)" where [picture] names the body of a coordinate
    of an array, the unit being the scene's label of `of`, or, for a momentum
-   without one, what follows from those of energy, t and the coordinate; to be
-   freed. */
+   without one, what follows from those of energy, t and the coordinate. */
 char *plot_label(const plan *, const char *name, const char *of);
 /* Scheme, gradient and time.
    scheme  NULL: several, and all gradients are named
    more    NULL or "": nothing */
 void plot_note_run(plot *, const plan *, const char *scheme, const char *more);
-/* "verlet, dt = 0.1 s": the first dt or tolerance of the plan; to be freed. */
+/* "verlet, dt = 0.1 s": the first dt or tolerance of the plan. */
 char *plot_scheme(const plan *, const char *integrator);
-/* "H = 0.125 J at the start"; to be freed. */
+/* "H = 0.125 J at the start". */
 char *plot_energy_at_start(const plan *);
 
 /* section_plot.c: a panel, the first making the plot.

@@ -6,7 +6,6 @@
 #include <errno.h>
 #include <signal.h>
 #include <spawn.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -80,10 +79,8 @@ static int refuse_end(int status, FILE *messages) {
         how = text_print("signal %d", WTERMSIG(status));
     else
         how = text_print("exit status %d", WEXITSTATUS(status));
-    int refused = tool_refuse(
+    return tool_refuse(
         *text ? "gnuplot failed (%s): %s" : "gnuplot failed (%s)", how, text);
-    free(how);
-    return refused;
 }
 
 static int run(char *const arguments[], FILE *in, FILE *out, FILE *messages) {

@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot_private.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double title_letter = 0.63 * PLOT_FONT; /* pixels, at scale 1 */
@@ -324,7 +323,7 @@ size_t plot_title_lines(const plot *p, const layout *l,
 }
 
 /* A third of so many letters is the name's at least; the unit, which begins with a
-   factor, has the others.  To be freed. */
+   factor, has the others. */
 static char *shorter_label(const char *label, size_t letters) {
     const char *unit = strrchr(label, '(');
     size_t name = unit ? plot_letters(label) - plot_letters(unit) : 0;
@@ -347,7 +346,6 @@ char *plot_fit_label(const char *label, double room, double *size) {
     double most = fmax(room / (letter * PLOT_FONT * scale), 8);
     char *whole = shorter_label(label ? label : "", (size_t)most);
     char *text = plot_shortened(whole, (size_t)most);
-    free(whole);
     *size = scale * PLOT_FONT;
     return text;
 }

@@ -83,7 +83,7 @@ typedef struct {
 axis plot_axis(range, bool log, double count, bool text);
 axis plot_axis_across(range, bool log, double letters, bool text);
 size_t plot_axis_letters(const axis *); /* of the longest number */
-/* With power and base; NULL: no label.  To be freed. */
+/* With power and base; NULL: no label. */
 char *plot_axis_label(const axis *, const char *label, bool text);
 
 /* plot_map.c */
@@ -169,7 +169,7 @@ size_t plot_title_lines(const plot *, const layout *,
                         text_line lines[PLOT_MOST_LINES]);
 /* A label that is smaller, or shorter, where it has no room otherwise: a third of
    the letters is the name's at least; the unit, which begins with a factor, has the
-   others.  To be freed.
+   others.
    size  out: of its letters */
 char *plot_fit_label(const char *label, double room, double *size);
 
@@ -249,7 +249,7 @@ void plot_script_series(FILE *, const plot *, size_t number, bool legend,
    so many letters; with a command around it. */
 void plot_quote_part(FILE *, const char *text, size_t bytes, const char *more);
 void plot_quote(FILE *, const char *text, size_t longest);
-char *plot_shortened(const char *text, size_t longest); /* to be freed */
+char *plot_shortened(const char *text, size_t longest);
 void plot_quote_line(FILE *, const char *before, const char *text,
                      double length, const char *after);
 

@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot_private.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* In double quotes a backslash, a quote and a backquote (a command, to gnuplot)
@@ -49,7 +48,6 @@ char *plot_shortened(const char *text, size_t longest) {
 void plot_quote(FILE *f, const char *text, size_t longest) {
     char *part = plot_shortened(text, longest);
     plot_quote_part(f, part, strlen(part), "");
-    free(part);
 }
 
 void plot_quote_line(FILE *f, const char *before, const char *text,

@@ -59,7 +59,6 @@ static double usual_length(const plot *p, size_t number, coordinate *of) {
         qsort(length, count, sizeof *length, compare_doubles);
         usual = length[(count - 1) / 2];
     }
-    free(length);
     return usual;
 }
 

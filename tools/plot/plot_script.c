@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot_private.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static void print_terminal(FILE *f, const target *t, const layout *l) {
@@ -85,7 +84,6 @@ static void print_map(FILE *f, const field_map *m, const layout *l) {
     print_axis(f, "cb", &a, true);
     plot_quote_line(f, "set cblabel ", label, l->panel_height / l->letter,
                     " offset 0.5,0");
-    free(label);
     double left = (l->left + l->panel_width + 2 * l->letter) / l->width;
     double top = 1 - (l->title + l->top) / l->height;
     fprintf(f, "set colorbox user origin %.6f,%.6f size %.6f,%.6f\n", left,
@@ -100,7 +98,6 @@ static void print_label(FILE *f, const char *before, const char *label,
     char font[64], *text = plot_fit_label(label, room, &size);
     snprintf(font, sizeof font, " font ',%.3g'%s", size, after);
     plot_quote_line(f, before, text, (double)plot_letters(text), font);
-    free(text);
 }
 
 /* Text has no letters that lie on their side. */
@@ -116,14 +113,11 @@ static void print_texts(FILE *f, const panel *on, const axes *a,
             text_print("%s%s%s", y ? y : "", on->heading && y ? ", " : "",
                        on->heading ? on->heading : "");
         plot_quote_line(f, "set title ", title, l->panel_width + l->left, "");
-        free(title);
     } else {
         print_label(f, "set xlabel ", x, width, " offset 0,0.5");
         print_label(f, "set ylabel ", y, height, "");
         print_label(f, "set title ", on->heading, width, " offset 0,-0.5");
     }
-    free(x);
-    free(y);
 }
 
 static void print_axes(FILE *f, const plot *p, size_t number, const layout *l,

@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot_private.h"
 #include <math.h>
-#include <stdlib.h>
 
 static void print_data(FILE *f, const series *s) {
     for (size_t k = 0; k < s->count; k++)
@@ -143,7 +142,6 @@ void plot_script_guides(FILE *f, const plot *p, size_t number,
                     names[i].to.x / l->panel_width,
                     names[i].to.y / l->panel_height);
     }
-    free(names);
 }
 
 void plot_script_series(FILE *f, const plot *p, size_t number, bool legend,

@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot_private.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double middle_line = 0.325; /* of a letter: from its base */
@@ -59,7 +58,6 @@ static void put_label(FILE *f, double x, double y, anchor a, double room,
     char *text = plot_fit_label(label, room, &size);
     if (*text)
         put_text(f, x, y, a, size, NULL, text);
-    free(text);
 }
 
 /* On its side, from below. */
@@ -157,8 +155,6 @@ static void put_labels(FILE *f, const panel *on, const axes *a, pair at,
                      l->panel_height + l->top + 0.8 * l->bottom, y);
     put_label(f, middle, at.y - (l->narrow ? 35 : 16.5), MIDDLE, width,
               on->heading);
-    free(x);
-    free(y);
 }
 
 static void put_guides(FILE *f, const plot *p, size_t number, pair at,
@@ -181,9 +177,7 @@ static void put_guides(FILE *f, const plot *p, size_t number, pair at,
                     at.y + l->panel_height - names[i].from.y,
                     at.x + names[i].to.x,
                     at.y + l->panel_height - names[i].to.y);
-        free(text);
     }
-    free(names);
 }
 
 /* Each with its name, which a browser shows where the pointer is. */
@@ -242,7 +236,6 @@ static void put_scale(FILE *f, const field_map *m, const layout *l) {
             {right, at.y + height}, {0, -height}, {1, 0}, {20, base}, START},
         true);
     put_standing(f, right + beside(&a), at.y + height / 2, height, label);
-    free(label);
 }
 
 static void put_legend(FILE *f, const plot *p, const layout *l) {
@@ -256,7 +249,6 @@ static void put_legend(FILE *f, const plot *p, const layout *l) {
         plot_svg_sample(f, p, &p->series[i], (pair){at.x + sample, y});
         put_text(f, at.x + name, y + base, START, PLOT_FONT, NULL, text);
         y += apart;
-        free(text);
     }
 }
 
@@ -284,14 +276,14 @@ void plot_svg(const plot *p, const target *t, FILE *to) {
     size_t most = t->most_bytes ? t->most_bytes : PLOT_MOST_BYTES;
     size_t size = most + 1;
     for (double detail = finest; size > most; detail *= coarser) {
-        char *text = NULL;
-        FILE *f = tool_owned(open_memstream(&text, &size));
-        put_picture(f, p, &l, detail);
-        fclose(f);
+        text_file text;
+        put_picture(text_open(&text), p, &l, detail);
+        char *picture = text_close(&text);
+        size = strlen(picture);
         if (size <= most || detail * coarser > coarsest) {
-            fwrite(text, 1, size, to);
+            fwrite(picture, 1, size, to);
             size = 0;
         }
-        free(tool_owned(text));
+        tool_release(picture);
     }
 }

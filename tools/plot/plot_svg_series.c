@@ -124,7 +124,6 @@ static void put_polygon(FILE *f, const plot_look *l, const plot_screen *s,
     count = cut_polygon(other, count, false, at.x + s->width, -1, point);
     count = cut_polygon(point, count, true, at.y, 1, other);
     count = cut_polygon(other, count, true, at.y + s->height, -1, point);
-    free(other);
     if (!count)
         return;
     fprintf(f,
@@ -149,7 +148,6 @@ static void put_areas(FILE *f, const plot_look *l, const plot_screen *s,
             put_polygon(f, l, s, at, polygon, points);
             points = 0;
         }
-    free(polygon);
 }
 
 /* Near ones follow each other: by rows of a pixel. */
@@ -256,7 +254,7 @@ static void mark_points(FILE *f, const plot_look *l, const plot_screen *s,
     if (l->many)
         qsort(marks, kept, sizeof *marks, by_place);
     put_all_marks(f, l, marks, kept);
-    free(marks);
+    tool_release(marks);
 }
 
 void plot_svg_series(FILE *f, const plot *p, const series *s,
@@ -279,7 +277,7 @@ void plot_svg_series(FILE *f, const plot *p, const series *s,
         mark_points(f, &l, on, at, seen, count);
     else if (l.mark)
         mark_points(f, &l, on, at, s->point, s->count);
-    free(seen);
+    tool_release(seen);
 }
 
 void plot_svg_sample(FILE *f, const plot *p, const series *s, pair at) {

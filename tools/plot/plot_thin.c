@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot_private.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Over the detail of a screen: plot_thin_error follows from them. */
@@ -170,8 +169,8 @@ static size_t thin_lines(const plot_screen *s, bool solid, const pair from[],
             kept += points;
         }
     }
-    free(line);
-    free(c.drawn);
+    tool_release(line);
+    tool_release(c.drawn);
     return kept;
 }
 
@@ -187,7 +186,7 @@ static size_t thin_dots(const plot_screen *s, const pair from[], size_t count,
             to[kept++] = from[i];
         }
     }
-    free(c.drawn);
+    tool_release(c.drawn);
     return kept;
 }
 

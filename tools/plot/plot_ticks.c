@@ -5,7 +5,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot_private.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double rounding = 1e-9; /* of a step */
@@ -185,7 +184,5 @@ char *plot_axis_label(const axis *a, const char *label, bool text) {
                          power, a->power ? " " : "", unit + 1);
     else
         all = text_print(a->power ? "%s%s (%s)" : "%s%s%s", label, base, power);
-    free(power);
-    free(base);
     return all;
 }

@@ -17,7 +17,6 @@ static char *unit_of_parts(const char *energy, const char *length,
     size_t all = strlen(energy), end = strlen(ends);
     bool fits = all > end && energy[all - end - 1] == ' ' &&
                 strcmp(energy + all - end, ends) == 0;
-    free(ends);
     return fits
                ? text_print("%.*s%s/%s", (int)(all - end), energy, length, time)
                : NULL;
@@ -61,10 +60,8 @@ static const char *body_of(const plan *p, const char *coordinate) {
 char *plot_label(const plan *p, const char *name, const char *of) {
     char *unit = unit_of(p, of);
     const char *body = body_of(p, name);
-    char *text = text_print(*unit ? "%s%s%s (%s)" : "%s%s%s%s", name,
-                            *body ? ", " : "", body, unit);
-    free(unit);
-    return text;
+    return text_print(*unit ? "%s%s%s (%s)" : "%s%s%s%s", name,
+                      *body ? ", " : "", body, unit);
 }
 
 static char *joined(const list *parts) {
@@ -72,7 +69,6 @@ static char *joined(const list *parts) {
     for (size_t i = 0; i < parts->count; i++) {
         char *longer =
             text_print("%s%s%s", text, i ? "; " : "", parts->item[i]);
-        free(text);
         text = longer;
     }
     return text;
@@ -91,11 +87,7 @@ void plot_note_run(plot *to, const plan *p, const char *scheme,
                *unit ? " " : "", unit);
     if (more && *more)
         list_add(&parts, more);
-    char *text = joined(&parts);
-    plot_note(to, text);
-    free(text);
-    free(gradients);
-    list_free(&parts);
+    plot_note(to, joined(&parts));
 }
 
 char *plot_scheme(const plan *p, const char *integrator) {

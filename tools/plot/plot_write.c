@@ -95,7 +95,6 @@ void plot_written_report(const options *o, const plan *p,
     if (points)
         printf(", %zu points", points);
     puts("; -o FILE writes the rows as CSV");
-    free(scheme);
 }
 
 int plot_check(const options *o) {

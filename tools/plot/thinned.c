@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "thinned.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 thinned thinned_new(size_t columns) {
@@ -11,11 +10,6 @@ thinned thinned_new(size_t columns) {
                      .row =
                          tool_allocate(THINNED_ROWS * columns, sizeof(double)),
                      .number = tool_allocate(THINNED_ROWS, sizeof(size_t))};
-}
-
-void thinned_free(thinned *t) {
-    free(t->row);
-    free(t->number);
 }
 
 static bool is_wanted(const thinned *t, size_t number) {

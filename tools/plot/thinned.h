@@ -18,7 +18,6 @@ typedef struct {
 } thinned;
 
 thinned thinned_new(size_t columns);
-void thinned_free(thinned *);
 /* The place of the next row; NULL: the row is not needed. */
 double *thinned_next(thinned *);
 

@@ -60,11 +60,6 @@ static recording recording_new(const animation *f, const char *integrator) {
     return r;
 }
 
-static void recording_free(recording *r) {
-    free(r->place);
-    free(r->error);
-}
-
 static void run(const animation *f, nevh_stepper *s, recorder *c) {
     const plan *p = f->plan;
     double *q = plan_state(p), start = p->run->t_start;
@@ -72,7 +67,6 @@ static void run(const animation *f, nevh_stepper *s, recorder *c) {
                                  {record_state, c, 1}};
     nevh_run_until(s, start, f->dt, start + (double)f->most * f->dt, q,
                    q + p->n, observers, 2);
-    free(q);
 }
 
 /* Records a run, without frames if the scheme does not fit. */
@@ -121,8 +115,6 @@ static double rounded(double dt) {
 
 static void record_both(animation *f, const char *integrator, double dt) {
     f->dt = dt;
-    recording_free(&f->recording[0]);
-    recording_free(&f->recording[1]);
     f->recording[0] = record(f, integrator);
     f->recording[1] = record(f, "rk4");
 }
@@ -201,9 +193,4 @@ bool animation_make(animation *f, plan *p, size_t bytes) {
         return false;
     return choose(f) && f->recording[0].frames > 1 &&
            f->recording[1].frames > 1;
-}
-
-void animation_free(animation *f) {
-    recording_free(&f->recording[0]);
-    recording_free(&f->recording[1]);
 }

@@ -4,7 +4,6 @@
 #include "plot/plot.h"
 #include "report_private.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Units of the picture. */

@@ -26,7 +26,6 @@ typedef struct {
    there is friction, with which no scheme is symplectic.
    bytes  that its places may take */
 bool animation_make(animation *, plan *, size_t bytes);
-void animation_free(animation *);
 
 /* animation_html.c: a figure that plays where scripts run, and is still elsewhere. */
 void animation_html(const animation *, FILE *);

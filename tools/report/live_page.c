@@ -8,7 +8,6 @@
 #include "report_private.h"
 #include <errno.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_SCHEMES = 4, MOST_STEPS = 3000000 };
@@ -65,12 +64,11 @@ static void put_lesson(FILE *f, const options *o, nevh_scene *scene) {
                 o->gradients.count ? o->gradients.item[0] : NULL, start,
                 lesson_usual(scene), MOST_STEPS / (n + 1), text);
     fprintf(f, ",\"lesson\":%s", text);
-    free(start);
 }
 
 static void put_scene(FILE *f, const options *o, const char *name,
                       nevh_scene *scene, double dt) {
-    char *text = tool_owned(nevh_scene_write(scene, NULL));
+    char *text = text_adopt(tool_owned(nevh_scene_write(scene, NULL)));
     fputs("{\"name\":", f);
     put_string(f, name);
     fputs(",\"text\":", f);
@@ -83,7 +81,6 @@ static void put_scene(FILE *f, const options *o, const char *name,
     else
         put_lesson(f, o, scene);
     fputc('}', f);
-    free(text);
 }
 
 /* The page has neither GSL nor transforms of time. */
@@ -110,7 +107,7 @@ static int check_schemes(const options *o) {
 }
 
 static int check_scene(nevh_scene *scene, const char *name, const options *o) {
-    char *code = nevh_scene_code_path(scene, 0);
+    char *code = text_adopt(nevh_scene_code_path(scene, 0));
     size_t n = nevh_scene_dof(scene);
     double *start = tool_allocate(2 * n, sizeof *start);
     int status = TOOL_OK;
@@ -118,8 +115,6 @@ static int check_scene(nevh_scene *scene, const char *name, const options *o) {
         status = tool_refuse("%s: a page cannot compile effects in C", name);
     else if (nevh_scene_start(scene, start, start + n))
         status = scene_report(scene, o);
-    free(code);
-    free(start);
     return status;
 }
 
@@ -140,9 +135,6 @@ static int read_kit(char **head, char **tail) {
         *head = text;
         *tail = cut + strlen(mark);
     }
-    if (status)
-        free(text);
-    free(name);
     return status;
 }
 
@@ -163,22 +155,18 @@ static int add_scene(FILE *f, const options *o, const char *name) {
     return status ? TOOL_USAGE : TOOL_OK;
 }
 
-/* Scenes as the page takes them; to be freed, NULL after a message. */
+/* Scenes as the page takes them; NULL after a message. */
 static char *all_scenes(const options *o) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *f = tool_owned(open_memstream(&text, &size));
+    text_file text;
+    FILE *f = text_open(&text);
     int status = TOOL_OK;
     for (size_t i = 1; !status && i < o->operands.count; i++) {
         fputs(i > 1 ? ",\n" : "[", f);
         status = add_scene(f, o, o->operands.item[i]);
     }
     fputs("]\n", f);
-    fclose(f);
-    if (!status)
-        return text;
-    free(text);
-    return NULL;
+    char *scenes = text_close(&text);
+    return status ? NULL : scenes;
 }
 
 static int live_page(const options *o) {
@@ -196,8 +184,6 @@ static int live_page(const options *o) {
         status = output_close(&out, TOOL_OK);
     } else
         status = TOOL_USAGE;
-    free(scenes);
-    free(head);
     return status;
 }
 

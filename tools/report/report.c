@@ -34,11 +34,7 @@ char *text_read(const char *name) {
         fclose(f);
     if (text)
         text[used] = '\0';
-    if (used == 0) {
-        free(text);
-        return NULL;
-    }
-    return text;
+    return used ? text : NULL;
 }
 
 static char *add_list(char *line, const char *option, const list *items) {
@@ -47,7 +43,6 @@ static char *add_list(char *line, const char *option, const list *items) {
         text_extend(&joined, ",%s", items->item[i]);
     if (items->count)
         line = shell_option(line, option, joined);
-    free(joined);
     return line;
 }
 
@@ -56,11 +51,8 @@ static char *command_of(const report_job *w, const char *scene,
                         const char *arguments) {
     const options *o = w->given;
     size_t word = strcspn(arguments, " ");
-    char *run = text_print("%.*s", (int)word, arguments);
-    char *line = shell_line(o, run, scene);
+    char *line = shell_line(o, text_print("%.*s", (int)word, arguments), scene);
     char *text = text_print("%s%s", line + strspn(line, " "), arguments + word);
-    free(run);
-    free(line);
     text = add_list(text, "integrators", &o->integrators);
     text = add_list(text, "gradient", &o->gradients);
     text = add_list(text, "dt", &o->dt);
@@ -151,10 +143,6 @@ static report_part make_part(report_job *w, const kind_of_part *kind,
     part.messages = text_read(w->messages);
     part.command =
         command_of(&(report_job){.given = &o}, scene, kind->arguments);
-    if (o.vary.item != w->given->vary.item)
-        list_free(&o.vary);
-    if (o.integrators.item != w->given->integrators.item)
-        list_free(&o.integrators);
     return part;
 }
 
@@ -170,12 +158,7 @@ static char *animation_command(const report_job *w, const animation *f,
     list_add(&o.integrators, f->recording[1].integrator);
     list_add(&o.dt, dt);
     o.t_end = t_end;
-    char *text = command_of(&as, scene, "compare");
-    list_free(&o.integrators);
-    list_free(&o.dt);
-    free(dt);
-    free(t_end);
-    return text;
+    return command_of(&as, scene, "compare");
 }
 
 /* Without HTML where there is none. */
@@ -184,30 +167,19 @@ static report_part make_animation(const report_job *w, const kind_of_part *kind,
     char *words[] = {"report", scene};
     options o = *w->given;
     report_part part = {.title = kind->title, .about = kind->about};
-    size_t size;
     plan p = {0};
     animation f = {0};
     o.operands = (list){words, 2};
     if (!plan_make(&p, &o) &&
         animation_make(&f, &p, ANIMATION_BYTES / w->animations)) {
-        FILE *to = tool_owned(open_memstream(&part.html, &size));
-        animation_html(&f, to);
-        fclose(to);
-        tool_owned(part.html);
+        text_file html;
+        animation_html(&f, text_open(&html));
+        part.html = text_close(&html);
         part.command = animation_command(w, &f, scene);
         part.by = "The same runs:";
     }
-    animation_free(&f);
     plan_free(&p);
     return part;
-}
-
-static void free_part(report_part *part) {
-    free(part->command);
-    free(part->html);
-    free(part->picture);
-    free(part->narrow);
-    free(part->messages);
 }
 
 /* True if a row of the comparison has a verdict, and so numbers. */
@@ -215,7 +187,6 @@ static bool has_verdict(const report_part *part) {
     for (int v = 0; part->html && v <= NEVH_UNDECIDED; v++) {
         char *cell = text_print("<td>%s</td>", nevh_verdict_name(v));
         bool found = strstr(part->html, cell);
-        free(cell);
         if (found)
             return true;
     }
@@ -252,7 +223,6 @@ static int add_part(report_job *w, const kind_of_part *kind, char *name,
         list_print(&w->contents, "%zu %s%s%s", w->parts, kind->title,
                    v->name ? ": " : "", v->name ? v->name : "");
     }
-    free_part(&part);
     return status;
 }
 
@@ -282,32 +252,28 @@ static int add_kind(report_job *w, const kind_of_part *kind, char *name,
 /* The title, contents and facts, which are known when its parts have been made. */
 static void begin_scene(report_job *w, const options *o, const char *name,
                         const variants *all, FILE *f) {
-    char *title = plan_title(all->item->scene, name, o);
-    html_title(f, all->item->scene, title);
+    html_title(f, all->item->scene, plan_title(all->item->scene, name, o));
     html_contents(f, &w->contents);
     html_side_by_side(f, all->count, true);
     for (size_t i = 0; i < all->count; i++)
         html_scene(f, all->item[i].scene, all->item[i].name,
                    &all->item[i].facts);
     html_side_by_side(f, all->count, false);
-    free(title);
 }
 
 static int add_scene(report_job *w, const options *o, char *name, FILE *f) {
     variants all;
-    char *text = NULL;
-    size_t size;
+    text_file text;
     int status = variants_open(&all, o, name);
-    FILE *parts = tool_owned(open_memstream(&text, &size));
+    FILE *parts = text_open(&text);
     for (const kind_of_part *k = report_kinds; !status && k->title; k++)
         status = add_kind(w, k, name, &all, parts);
-    fclose(parts);
+    const char *made = text_close(&text);
     if (!status) {
         begin_scene(w, o, name, &all, f);
-        fputs(tool_owned(text), f);
+        fputs(made, f);
     }
-    free(text);
-    list_free(&w->contents);
+    w->contents = (list){0};
     variants_close(&all);
     return status;
 }
@@ -363,11 +329,6 @@ static void free_work(report_job *w) {
     output_leave(NULL);
     if (w->messages)
         remove_folder(w);
-    free(w->rows);
-    free(w->picture);
-    free(w->narrow);
-    free(w->messages);
-    free(w->folder);
 }
 
 static int write_page(const options *o, const char *text) {
@@ -384,13 +345,11 @@ static void begin_page(const options *o, FILE *f) {
     for (size_t i = 1; i < o->operands.count; i++)
         text_extend(&title, "%s%s", i > 1 ? ", " : ": ", o->operands.item[i]);
     html_head(f, title, o->variants.count > 1);
-    free(title);
 }
 
 static int report(const options *o) {
     report_job w = {.given = o, .terminal = -1};
-    char *text = NULL;
-    size_t size;
+    text_file text;
     if (o->operands.count < 2)
         return tool_refuse("nevh report takes scenes, as in nevh report "
                            "pendulum -o pendulum.html");
@@ -400,7 +359,7 @@ static int report(const options *o) {
         free_work(&w);
         return TOOL_USAGE;
     }
-    FILE *f = tool_owned(open_memstream(&text, &size));
+    FILE *f = text_open(&text);
     int status = TOOL_OK;
     begin_page(o, f);
     w.animations =
@@ -408,12 +367,9 @@ static int report(const options *o) {
     for (size_t i = 1; !status && i < o->operands.count; i++)
         status = add_scene(&w, o, o->operands.item[i], f);
     html_foot(f);
-    fclose(f);
+    const char *made = text_close(&text);
     free_work(&w);
-    if (!status)
-        status = write_page(o, tool_owned(text));
-    free(text);
-    return status;
+    return status ? status : write_page(o, made);
 }
 
 const command report_command = {

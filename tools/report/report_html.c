@@ -147,8 +147,7 @@ static void put_notes_once(FILE *f, char *html, list *earlier) {
 }
 
 void html_find_facts(const char *html, list *facts, list *earlier) {
-    char *copy = text_print("%s", html ? html : "");
-    char *line = strtok(copy, "\n");
+    char *line = strtok(text_print("%s", html ? html : ""), "\n");
     if (line && is_note(line)) { /* the title */
         list_add(earlier, line);
         line = strtok(NULL, "\n");
@@ -158,7 +157,6 @@ void html_find_facts(const char *html, list *facts, list *earlier) {
         list_print(facts, "%.*s", (int)(strlen(line) - strlen("<p></p>")),
                    line + strlen("<p>"));
     }
-    free(copy);
 }
 
 /* "H = T(p) + V(q)", "gradient: exact". */
@@ -211,7 +209,7 @@ void html_part(FILE *f, const report_part *p, size_t number, list *earlier) {
 
 static void put_equation(FILE *f, const nevh_scene *scene, size_t i) {
     nevh_scene_equation e = nevh_scene_equation_at(scene, i);
-    char *math = nevh_scene_equation_mathml(scene, i);
+    char *math = text_adopt(nevh_scene_equation_mathml(scene, i));
     fprintf(f, "<dd%s tabindex=\"0\">", e.on ? "" : " class=\"off\"");
     if (strcmp(e.section, "effects") == 0 || strcmp(e.section, "friction") == 0)
         fputs(e.on ? "" : "(off) ", f);
@@ -225,7 +223,6 @@ static void put_equation(FILE *f, const nevh_scene *scene, size_t i) {
         fputs("</code>", f);
     }
     fputs("</dd>\n", f);
-    free(math);
 }
 
 void html_title(FILE *f, const nevh_scene *scene, const char *title) {

@@ -46,7 +46,7 @@ typedef struct {
 int variants_open(variants *, const options *, const char *scene);
 void variants_close(variants *);
 
-/* report.c: a whole file, to be freed; NULL: there is none, or it is empty. */
+/* report.c: a whole file; NULL: there is none, or it is empty. */
 char *text_read(const char *name);
 
 /* report_html.c */

@@ -1,7 +1,6 @@
 /* nevh report: a scene as it is given, or its variants.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report_private.h"
-#include <stdlib.h>
 
 /* With settings of its own after those that are given. */
 static int variant_open(variant *v, const options *o, const char *name,
@@ -29,11 +28,6 @@ int variants_open(variants *all, const options *o, const char *scene) {
 }
 
 void variants_close(variants *all) {
-    for (size_t i = 0; i < all->count; i++) {
-        list_free(&all->item[i].given.settings);
-        list_free(&all->item[i].earlier);
-        list_free(&all->item[i].facts);
+    for (size_t i = 0; i < all->count; i++)
         nevh_scene_free(all->item[i].scene);
-    }
-    free(all->item);
 }

@@ -3,7 +3,6 @@
 #include "study.h"
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* With a gradient that takes no time to plan: what a scheme needs is asked of
    H, and whether a gradient fits is another question. */
@@ -100,12 +99,12 @@ static int plan_goes_anywhere(const plan *p) {
 
 int plan_search(plan *p, const options *o) {
     if (o->gradients.count == 0) {
-        list_free(&p->gradients);
+        p->gradients = (list){0};
         list_add(&p->gradients,
                  gradient_fits(p, "exact", NULL) ? "exact" : "central4");
     }
     if (o->integrators.count == 0) {
-        list_free(&p->integrators);
+        p->integrators = (list){0};
         fitting_integrators(p, &p->integrators);
     }
     if (!plan_fits(p, NULL))

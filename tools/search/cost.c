@@ -4,7 +4,6 @@
 #include "cost_private.h"
 #include "plot/order_plot.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 const double cost_target[COST_TARGETS] = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
@@ -121,7 +120,6 @@ static void choose_native(costs *c, const cell cells[], size_t count) {
     for (size_t i = 0; i < count; i++)
         all[i] = &cells[i].study->level[cells[i].level];
     rows_choose_native(&c->search.plan, all, count, true);
-    free(all);
 }
 
 /* Times all cells. Compilation is decided for all of them before the first is
@@ -135,7 +133,6 @@ static void time_cells(costs *c) {
     count = find_cells(c, is_shown, cells);
     for (size_t i = 0; i < count; i++)
         study_time(&c->search, cells[i].study, cells[i].level);
-    free(cells);
 }
 
 /* Programs read the verdict of each row; the table has none, and an orbit
@@ -236,7 +233,6 @@ static page make_page(const options *o, costs *c) {
         cost_words(c, &result.after);
         time_words(&c->search.plan, rows, count, &result.after);
     }
-    free(rows);
     return result;
 }
 
@@ -275,9 +271,7 @@ static int draw_costs(const options *o, const costs *c) {
     if (o->plot.kind != PLOT_KIND_order)
         return cost_plot(o, c);
     row *rows = list_rows(c, cost_draws, &count);
-    int status = order_plot(o, &c->search.plan, rows, count, ORDER_DT);
-    free(rows);
-    return status;
+    return order_plot(o, &c->search.plan, rows, count, ORDER_DT);
 }
 
 double cost_budget(const options *o) {
@@ -299,15 +293,11 @@ static int cost_plan(const options *o, plan *p, double whole) {
     bool first = plot_goes_first(o);
     int drawn = first ? draw_costs(o, &c) : TOOL_OK;
     page_print(&result, o, out.stream);
-    page_free(&result);
     int status = output_close(&out, report_failures(&c));
     if (plot_wanted(o) && !first)
         drawn = draw_costs(o, &c);
     if (drawn)
         status = TOOL_USAGE;
-    for (size_t i = 0; i < c.count; i++)
-        study_free(&c.study[i]);
-    free(c.study);
     return status;
 }
 

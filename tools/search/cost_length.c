@@ -78,7 +78,6 @@ static int run_lengths(lengths *l, const options *o) {
     for (size_t k = 0; k < LENGTHS && !status; k++)
         status = run_to(l, &s, k);
     search_end(&s);
-    rows_free(&first);
     return status;
 }
 
@@ -105,9 +104,7 @@ static table *table_of(const lengths *l) {
     bool gradients = l->plan.gradients.count > 1;
     table_titles(t, gradients ? "integrator,gradient,dt" : "integrator,dt");
     for (size_t k = 0; k < LENGTHS; k++) {
-        char *title = text_print("  t = %.3g", l->end[k]);
-        table_column(t, title);
-        free(title);
+        table_column(t, text_print("  t = %.3g", l->end[k]));
     }
     table_titles(t, "error\ngrows as,ms");
     for (size_t i = 0; i < l->schemes; i++) {
@@ -117,9 +114,7 @@ static table *table_of(const lengths *l) {
             table_text(t, longest->gradient);
         table_shown(t, "%.4g", longest->dt);
         for (size_t k = 0; k < LENGTHS; k++) {
-            char *text = digits_text(l, i, k);
-            table_text(t, text);
-            free(text);
+            table_text(t, digits_text(l, i, k));
         }
         if (isnan(growth(l, i)))
             table_text(t, "-");
@@ -226,8 +221,6 @@ static void crossing_word(const lengths *l, size_t from, size_t to,
                                 : "");
     if (!list_has(words, text))
         list_add(words, text);
-    free(text);
-    free(rounded);
 }
 
 /* Both of a pair have one gradient. */
@@ -276,7 +269,6 @@ static int print_lengths(lengths *l, const options *o) {
     if (!status) {
         page result = page_of(l, o);
         page_print(&result, o, out.stream);
-        page_free(&result);
     }
     for (size_t i = 0; i < count; i++)
         if (l->row[i].failed && status != TOOL_FAILED)
@@ -296,7 +288,6 @@ static void choose_step(plan *p, const options *o) {
     if (o->dt.count)
         return;
     double dt = p->dt[0] / finer;
-    free(p->given_dt);
     p->given_dt = tool_allocate(1, sizeof dt);
     p->given_dt[0] = dt;
     p->dt = p->given_dt;
@@ -345,8 +336,6 @@ int cost_lengths(const options *o) {
     }
     if (!status)
         status = print_lengths(&l, o);
-    row_list rows = {l.row, l.schemes * LENGTHS};
-    rows_free(&rows);
     plan_free(p);
     return status;
 }

@@ -3,7 +3,6 @@
 #include "cost_private.h"
 #include "plot/energy_plot.h"
 #include <math.h>
-#include <stdlib.h>
 
 static const double useless = 10; /* as an error */
 
@@ -59,7 +58,6 @@ static void draw_study(drawing *d, const study *l) {
             plot_point(d->to, series, d->work(&l->level[k]), error_of(l, k));
         else
             d->left_out += isfinite(error_of(l, k)) && is_outdone(l, k);
-    free(name);
 }
 
 /* Draws a line of the order of a scheme with fixed steps, a factor to the right of
@@ -78,14 +76,12 @@ static void draw_guide(const drawing *d, const study *l) {
     double order = nevh_integrator_order(l->scheme);
     double work = aside * d->work(&l->level[middle]);
     double error = error_of(l, middle);
-    char *name = text_print("order %g", order);
-    size_t series = plot_series(d->to, name);
+    size_t series = plot_series(d->to, text_print("order %g", order));
     plot_style(d->to, series, PLOT_GUIDE);
     plot_point(d->to, series, work * pow(10, -decades / order / 2),
                error * pow(10, decades / 2));
     plot_point(d->to, series, work * pow(10, decades / order / 2),
                error * pow(10, -decades / 2));
-    free(name);
 }
 
 /* For the first scheme of each order up to 4: those of higher ones have few
@@ -134,7 +130,6 @@ static void add_note(const drawing *d) {
         d->left_out ? "; steps that cost no less than shorter ones are left out"
                     : "");
     plot_note_run(d->to, p, NULL, text);
-    free(text);
 }
 
 static bool draws_any(const costs *c) {
@@ -161,7 +156,5 @@ int cost_plot(const options *o, const costs *c) {
     draw_panel(&d);
     draw_guides(&d);
     add_note(&d);
-    int status = plot_write(d.to, o);
-    plot_free(d.to);
-    return status;
+    return plot_write(d.to, o);
 }

@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cost_private.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* The cheapest row with the most digits that are reached. */
@@ -48,13 +47,10 @@ void cost_price(costs *c, list *words) {
             if (more)
                 text_extend(&text, ", %s", more);
             others += more != NULL;
-            free(more);
         }
-        study_free(&other);
     }
     if (others)
         list_print(words,
                    "price of the gradient (%s at dt = %.4g, error %.1g): %s",
                    l->integrator, best->dt, study_error(best), text);
-    free(text);
 }

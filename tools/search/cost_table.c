@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cost_private.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 bool cost_is_yardstick(const study *l) {
@@ -74,9 +73,7 @@ bool cost_is_beyond(const costs *c, size_t target) {
 
 static char *cell_text(const row *r, bool star) {
     char *time = cost_milliseconds(r->seconds);
-    char *text = text_print("%s %s (%.6g)", star ? "*" : " ", time, r->dt);
-    free(time);
-    return text;
+    return text_print("%s %s (%.6g)", star ? "*" : " ", time, r->dt);
 }
 
 const char *cost_word(const costs *c, const study *l, size_t target) {
@@ -117,7 +114,6 @@ static void show_cell(const costs *c, const study *l, size_t target, table *t) {
                      ? text_print("%s =", star ? "*" : " ")
                      : cell_text(cost_cell(l, target), star);
     table_text(t, text);
-    free(text);
 }
 
 table *cost_table(const costs *c) {
@@ -129,18 +125,14 @@ table *cost_table(const costs *c) {
     for (size_t k = 0; k < COST_TARGETS; k++) {
         if (cost_is_empty(c, k))
             continue;
-        char *title = text_print("  1e%.0f", log10(cost_target[k]));
-        table_column(t, title);
-        free(title);
+        table_column(t, text_print("  1e%.0f", log10(cost_target[k])));
     }
     for (size_t i = 0; i < c->count; i++) {
         const study *l = &c->study[i];
         if (!cost_shows(c, l))
             continue;
-        char *name =
-            text_print("%s%s", l->integrator, cost_drifts(l) ? ", drifts" : "");
-        table_text(t, name);
-        free(name);
+        table_text(t, text_print("%s%s", l->integrator,
+                                 cost_drifts(l) ? ", drifts" : ""));
         if (gradients)
             table_text(t, l->gradient);
         for (size_t k = 0; k < COST_TARGETS; k++)

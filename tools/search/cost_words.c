@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cost_private.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 void cost_notes(const costs *c, list *notes) {
@@ -58,13 +57,6 @@ static slope slope_new(const study *l) {
     return s;
 }
 
-static void slope_free(slope *s) {
-    free(s->error);
-    free(s->seconds);
-    free(s->evaluations);
-    free(s->frequency);
-}
-
 static const char *remark(const study *l, double time, double theory) {
     bool is_implicit = nevh_integrator_explicit(l->scheme) == NEVH_NO &&
                        !nevh_integrator_adaptive(l->scheme);
@@ -86,7 +78,6 @@ static void digit_words(const study *l, list *words) {
                    " %-21s x %-5.3g  x %-5.3g        x %-5.3g  x %-5.3g%s",
                    l->integrator, time, evaluations, steps, theory,
                    remark(l, evaluations, theory));
-    slope_free(&s);
 }
 
 static void digits_words(const costs *c, list *words) {
@@ -99,7 +90,6 @@ static void digits_words(const costs *c, list *words) {
                         "steps    10^(1/order)");
     for (size_t i = 0; i < lines.count; i++)
         list_add(words, lines.item[i]);
-    list_free(&lines);
 }
 
 /* The last of the targets from `first` on that have the same cheapest. */
@@ -134,11 +124,6 @@ static void best_words(const costs *c, size_t first, size_t last, list *words) {
                    "For %s digits take %s, from %s (%s ms) to %s (%s "
                    "ms).",
                    digits, best->integrator, begin, from, end, to);
-    free(digits);
-    free(from);
-    free(to);
-    free(begin);
-    free(end);
 }
 
 /* At the most digits that both reach. */
@@ -216,7 +201,6 @@ static void name_words(const costs *c, list *words, const char *format,
     char *names = names_where(c, holds);
     if (*names)
         list_print(words, "%s: %s", names, format);
-    free(names);
 }
 
 /* The first of the table in full, the others by name. */
@@ -247,8 +231,6 @@ static void failure_words(const costs *c, list *words) {
     else if (others.count)
         list_print(words, "%s %s as well.", names,
                    others.count == 1 ? "fails" : "fail");
-    free(names);
-    list_free(&others);
 }
 
 static void hidden_words(const costs *c, list *words) {
@@ -292,9 +274,7 @@ static double typical_spread(const costs *c) {
             if (r->ran && r->spread > 0)
                 part[count++] = r->spread / r->seconds;
         }
-    double median = numbers_median(part, count);
-    free(part);
-    return median;
+    return numbers_median(part, count);
 }
 
 static bool any_word(const costs *c, const char *wanted) {
@@ -356,8 +336,6 @@ static void legend_words(const costs *c, list *words) {
         "Times were measured on this machine: medians of repeated runs%s; "
         "evaluations are exact.",
         spread > 0 ? share : "");
-    free(share);
-    free(longest);
 }
 
 void cost_words(costs *c, list *words) {

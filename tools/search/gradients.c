@@ -6,7 +6,6 @@
 #include "gradients_private.h"
 #include "plot/plot.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static void add_numbers(const finding *g, table *t, bool for_people) {
@@ -92,7 +91,6 @@ static void add_all(page *result, findings *f, bool for_people) {
         add_finding(result, &f->item[i], for_people);
         finding_free(&f->item[i]);
     }
-    free(f->item);
 }
 
 static table *new_table(bool for_people) {
@@ -161,7 +159,6 @@ static int gradients_plan(const options *o, const plan *p) {
         if (plot_wanted(o) && !first)
             drawn = gradients_plot(o, &c);
     }
-    page_free(&result);
     gradients_job_free(&c);
     return drawn ? TOOL_USAGE : status;
 }

@@ -31,10 +31,6 @@ static orbit_states states_new(const plan *p, size_t steps) {
 }
 
 static void states_free(orbit_states *o) {
-    free(o->t);
-    free(o->q);
-    free(o->p);
-    free(o->h);
     nevh_field_free(o->field);
 }
 
@@ -65,7 +61,6 @@ static int follow(const gradients_job *c, const char *gradient, double step,
     if (!status)
         status = nevh_run(s, c->plan->run->t_start, c->dt, c->steps, q, p,
                           observer, 1);
-    free(q);
     nevh_stepper_free(s);
     return status;
 }
@@ -107,8 +102,6 @@ static double largest_error(const gradients_job *c, nevh_field *f) {
             error = fmax(error, fabs(dp[k] - c->dp[i * n + k]));
         }
     }
-    free(dq);
-    free(dp);
     return error / c->size;
 }
 
@@ -148,7 +141,6 @@ static double time_of(const gradients_job *c, nevh_field *f) {
         } while (now - start < enough);
         seconds[round] = (now - start) / (double)count;
     }
-    free(out);
     return 1e9 * numbers_median(seconds, ROUNDS_TIMED);
 }
 
@@ -223,8 +215,6 @@ void gradients_influx(const gradients_job *c, finding findings[],
     for (size_t i = 0; i < count; i++)
         findings[i].influx = status ? NAN : f.influx[i].most / c->scale;
     nevh_field_free(f.exact);
-    free(f.influx);
-    free(f.gradient);
 }
 
 static double energy_along(const gradients_job *c, const finding *g) {
@@ -273,7 +263,6 @@ finding gradient_find(const gradients_job *c, const char *gradient,
 
 void finding_free(finding *g) {
     nevh_field_free(g->field);
-    free(g->why);
 }
 
 /* The shortest of those that differences of full order have chosen. */
@@ -315,7 +304,6 @@ static double step_work(const gradients_job *c) {
         nevh_counts_seconds(&spent, c->plan->n, scheme_of(c), order, PILOT) /
         PILOT;
     nevh_stepper_free(s);
-    free(state);
     return status ? 0 : work;
 }
 
@@ -350,12 +338,9 @@ int gradients_job_make(gradients_job *c, const plan *p) {
     char *why = plan_why(p, "another integrator or a shorter dt may not");
     tool_refuse("%s: %s at dt = %g fails on this orbit: %s", p->name,
                 c->integrator, c->dt, why);
-    free(why);
     return TOOL_FAILED;
 }
 
 void gradients_job_free(gradients_job *c) {
     states_free(&c->exact);
-    free(c->dq);
-    free(c->dp);
 }

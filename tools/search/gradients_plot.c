@@ -7,7 +7,6 @@
 #include "study.h"
 #include "plot/plot.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { LEAST = -13, MOST = 1, EACH = 6 }; /* powers of 10, points a decade */
@@ -53,9 +52,7 @@ static double error_at(const drawing *d, const char *gradient, double x) {
     double *steps = tool_allocate(2 * n, sizeof *steps);
     for (size_t k = 0; k < 2 * n; k++)
         steps[k] = d->relative ? x * d->size[k] : x;
-    double error = gradient_error(d->gradients_job, gradient, steps);
-    free(steps);
-    return error;
+    return gradient_error(d->gradients_job, gradient, steps);
 }
 
 static double place(const drawing *d, double x) {
@@ -68,13 +65,11 @@ static void draw_slope(const drawing *d, const char *gradient, double x,
                        double error) {
     static const double aside = 0.4, decades = 1.2;
     int order = nevh_gradient_order(nevh_gradient_named(gradient));
-    char *name = text_print("slope %d", order);
-    size_t series = plot_series(d->to, name);
+    size_t series = plot_series(d->to, text_print("slope %d", order));
     plot_style(d->to, series, PLOT_GUIDE);
     plot_point(d->to, series, aside * x, error);
     plot_point(d->to, series, aside * x * pow(10, -decades / order * 2),
                error * pow(10, -decades * 2));
-    free(name);
 }
 
 static size_t draw_curve(const drawing *d, const char *gradient) {
@@ -124,7 +119,6 @@ static void draw_level(const drawing *d, const char *gradient) {
     for (int i = LEAST; i <= MOST; i += MOST - LEAST)
         plot_point(d->to, series, place(d, pow(10, i)),
                    error < least ? 0 : error);
-    free(name);
 }
 
 static void draw_all(const drawing *d, const options *o) {
@@ -163,11 +157,6 @@ int gradients_plot(const options *o, const gradients_job *c) {
                     "largest error of the gradient");
     plot_log(d.to, true, true);
     draw_all(&d, o);
-    char *more = words(&d);
-    plot_note(d.to, more);
-    int status = plot_write(d.to, o);
-    plot_free(d.to);
-    free(more);
-    free(d.size);
-    return status;
+    plot_note(d.to, words(&d));
+    return plot_write(d.to, o);
 }

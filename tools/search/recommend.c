@@ -4,7 +4,6 @@
 #include "cli/commands.h"
 #include "recommend_private.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* The length of the whole run over that of the pilot. */
@@ -82,7 +81,6 @@ static size_t list_next(const recommendation *a, bool taken[],
             found[count++] = l;
         }
     }
-    free(skipped);
     return count;
 }
 
@@ -146,10 +144,6 @@ static void verify_pilots(recommendation *a) {
                     ? 0
                     : list_next(a, taken, pilots);
     }
-    free(taken);
-    for (size_t i = 0; i < a->count; i++)
-        study_free(&a->study[i]);
-    free(a->study);
     a->study = full, a->count = done;
 }
 
@@ -215,11 +209,6 @@ static int advise(const options *o, plan *p, double whole) {
     search_end(&a.search);
     if (a.best)
         recommend_print(&a, o, out.stream);
-    for (size_t i = 0; i < a.count; i++)
-        study_free(&a.study[i]);
-    free(a.study);
-    free(a.not_longer);
-    list_free(&a.gradients);
     return output_close(&out, status);
 }
 

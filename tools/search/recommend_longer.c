@@ -3,7 +3,6 @@
 #include "experiment/trial_run.h"
 #include "recommend_private.h"
 #include <math.h>
-#include <stdlib.h>
 
 static const double lengths = 3;
 static const double most_work = 6; /* as nevh_counts_seconds */
@@ -11,7 +10,7 @@ static const double most_work = 6; /* as nevh_counts_seconds */
    errors that walk. */
 static const double margin = 0.98;
 
-/* The same run once more, as `run` says; to be freed with its status. */
+/* The same run once more, as `run` says. */
 static row again(const plan *run, const row *r, error_bound *bound) {
     row copy = {.integrator = r->integrator,
                 .gradient = r->gradient,
@@ -28,7 +27,6 @@ static void compare_orbit(const plan *p, row *r) {
     row copy = again(p, r, NULL);
     r->state_error = copy.state_error;
     r->energies = copy.energies;
-    free(copy.status);
 }
 
 static void follow(const recommendation *a, const plan *longer, row *r) {
@@ -42,7 +40,6 @@ static void follow(const recommendation *a, const plan *longer, row *r) {
         bound->unknown = true;
     else if (!copy.ran && !bound->unknown)
         bound->broken = true;
-    free(copy.status);
     if (!bound->broken) /* the run itself keeps it */
         bound->until = fmax(bound->until, a->search.plan.t_end);
     r->error_bound = bound;
@@ -69,7 +66,6 @@ static void find_period(recommendation *a) {
     trial_run f = trial_run_new(&a->search.plan, false);
     a->period = f.frequency > 0 ? 2 * acos(-1) / f.frequency : NAN;
     a->period_at = f.frequency_at;
-    free(f.failure);
 }
 
 void recommend_follow(recommendation *a, plan *p) {

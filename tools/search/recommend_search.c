@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recommend_private.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 bool recommend_counts(const recommendation *a, const study *l) {
@@ -112,7 +111,6 @@ void recommend_time_once(recommendation *a) {
     rows_choose_native(&a->search.plan, found, count, true);
     for (size_t i = 0; i < count; i++)
         rows_time(&a->search.plan, &found[i], 1, 1, a->search.repeats > 0);
-    free(found);
 }
 
 /* True if it is the better of two that take as long: no drift, or less work. */
@@ -173,7 +171,6 @@ static size_t list_best(const recommendation *a, double factor, bool gradients,
         taken[l - a->study] = true;
         found[count++] = l;
     }
-    free(taken);
     return count;
 }
 
@@ -271,7 +268,6 @@ void recommend_choose(recommendation *a) {
         if (!a->steady && !row_drifts(recommend_keeps(a, l)))
             a->steady = l;
     }
-    free(taken);
 }
 
 /* The other answers, where they are too dear to win. */

@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recommend_private.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 size_t recommend_list(const recommendation *a,
@@ -64,9 +63,7 @@ static table *shown(const recommendation *a) {
     table_column(t, "integrator");
     table_column(t, "gradient");
     table_column(t, "dt");
-    char *title = text_print("%s\nerror", search_error(&a->search));
-    table_column(t, title);
-    free(title);
+    table_column(t, text_print("%s\nerror", search_error(&a->search)));
     if (has_states(a))
         table_column(t, "state\nerror");
     table_column(t, "holds\nuntil t");
@@ -147,7 +144,6 @@ static void step_words(const recommendation *a, const row *r, list *words) {
                                "period of the orbit, %s%s.",
                    steps < 1 ? 1 / steps : steps, a->period, p->unit, where,
                    at_start ? "" : p->unit);
-    free(where);
 }
 
 static void longer_words(const recommendation *a, const row *r, list *words) {
@@ -194,7 +190,6 @@ static void warn(const recommendation *a, const row *r, list *words) {
                    nevh_reference_horizon(p->reference));
     if (unseen)
         list_add(words, unseen);
-    free(unseen);
 }
 
 /* On its energy, as far as the run, or a longer one, decides it. */
@@ -256,7 +251,6 @@ static void answer_words(const recommendation *a, const options *o,
     list_add(words, line);
     list_add(words, " ");
     setting_words(a, r, words);
-    free(line);
 }
 
 void recommend_print(const recommendation *a, const options *o, FILE *f) {
@@ -276,7 +270,6 @@ void recommend_print(const recommendation *a, const options *o, FILE *f) {
         passed_words(searched, rows, count, &p.after);
     }
     page_print(&p, o, f);
-    page_free(&p);
 }
 
 /* Finds the smallest error of the studies that count; at_floor: of those that ended
@@ -369,7 +362,5 @@ int recommend_none(const recommendation *a) {
                 " is that of %s with the %s gradient; %s",
                 a->search.plan.name, what, a->target, until, least,
                 l->integrator, l->gradient, why);
-    free(until);
-    free(why);
     return TOOL_FAILED;
 }

@@ -92,6 +92,4 @@ void search_progress(const search *s, const row *r) {
 void search_end(search *s) {
     if (shows_progress(s))
         fputs("\r\033[K", stderr);
-    free(s->dt);
-    free(s->tolerance);
 }

@@ -28,16 +28,6 @@ study study_like(const study *l, const char *gradient) {
                    .exact = l->exact};
 }
 
-void study_free(study *l) {
-    for (size_t i = 0; i < l->count; i++) {
-        free(l->level[i].status);
-        free(l->level[i].error_bound);
-        free(l->level[i].energies);
-    }
-    free(l->level);
-    free(l->k);
-}
-
 double study_error(const row *r) {
     double error = !r->by_state    ? r->energy.max
                    : r->observable ? r->observable_error
@@ -65,15 +55,8 @@ static void reserve(study *l) {
     if (l->count < l->capacity)
         return;
     l->capacity = l->capacity ? 2 * l->capacity : 16;
-    row *level = tool_allocate(l->capacity, sizeof *level);
-    int *k = tool_allocate(l->capacity, sizeof *k);
-    if (l->count) {
-        memcpy(level, l->level, l->count * sizeof *level);
-        memcpy(k, l->k, l->count * sizeof *k);
-    }
-    free(l->level);
-    free(l->k);
-    l->level = level, l->k = k;
+    l->level = tool_enlarge(l->level, l->capacity, sizeof *l->level);
+    l->k = tool_enlarge(l->k, l->capacity, sizeof *l->k);
 }
 
 static size_t insert(study *l, size_t i, int k, row r) {
@@ -87,7 +70,6 @@ static size_t insert(study *l, size_t i, int k, row r) {
 }
 
 static void forget(study *l, size_t i) {
-    free(l->level[i].status);
     l->count--;
     memmove(l->level + i, l->level + i + 1, (l->count - i) * sizeof *l->level);
     memmove(l->k + i, l->k + i + 1, (l->count - i) * sizeof *l->k);
@@ -174,7 +156,6 @@ static bool keeps_at_any_step(search *s, const study *l) {
         longer.t_end = fmax(s->plan.t_end, s->plan.run->t_start + steps * r.dt);
         run_row(s, &longer, &r);
         keeps = study_error(&r) < kept;
-        free(r.status);
     }
     return keeps;
 }
@@ -444,8 +425,6 @@ row *study_cheapest(const study *l, double target) {
         error[i] = isnan(work[i]) ? INFINITY : study_error(&l->level[i]);
     }
     size_t i = grid_cheapest(error, work, l->count, target);
-    free(error);
-    free(work);
     return i < l->count ? &l->level[i] : NULL;
 }
 

@@ -78,7 +78,6 @@ void search_end(search *);
 study study_new(const plan *, const char *integrator, const char *gradient);
 /* The same integrator with another gradient, or for another end. */
 study study_like(const study *, const char *gradient);
-void study_free(study *);
 /* Finds the coarsest usable step, from the scene's on. */
 void study_begin(search *, study *);
 /* Next: the one with the least work in its next level; NULL: none is open. */

@@ -75,7 +75,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     insist(status == TOOL_OK || status == TOOL_USAGE);
     if (!status)
         use(&o);
-    options_free(&o);
+    tool_release_all();
     free(text);
     return 0;
 }
