@@ -22,15 +22,8 @@ const nevh_integrator nevh__blanes_moan4_entry = {
               "Runge-Kutta and Runge-Kutta-Nystroem methods, J. Comput. Appl. "
               "Math. 142 (2002) 313-330, table 2, S6; kick first",
     .order = 4,
-    .stages = 6,
-    .gradients = 6,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_YES,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE,
-    .kernel = &nevh_splitting_kernel,
-    .table = &six,
+    NEVH__SPLITTING(6, six),
 };
 NEVH__PUBLISH(blanes_moan4);
 
@@ -54,14 +47,7 @@ const nevh_integrator nevh__blanes_moan6_entry = {
               "Runge-Kutta and Runge-Kutta-Nystroem methods, J. Comput. Appl. "
               "Math. 142 (2002) 313-330, table 2, S10; kick first",
     .order = 6,
-    .stages = 10,
-    .gradients = 10,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_YES,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE,
-    .kernel = &nevh_splitting_kernel,
-    .table = &ten,
+    NEVH__SPLITTING(10, ten),
 };
 NEVH__PUBLISH(blanes_moan6);

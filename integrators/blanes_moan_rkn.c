@@ -23,15 +23,8 @@ const nevh_integrator nevh__rkn6b_entry = {
               "Runge-Kutta and Runge-Kutta-Nystroem methods, J. Comput. Appl. "
               "Math. 142 (2002) 313-330, table 3, SRKN 6 b; kick first",
     .order = 4,
-    .stages = 6,
-    .gradients = 6,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_YES,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE,
-    .kernel = &nevh_splitting_kernel,
-    .table = &six,
+    NEVH__SPLITTING(6, six),
 };
 NEVH__PUBLISH(rkn6b);
 
@@ -56,15 +49,8 @@ const nevh_integrator nevh__rkn11b_entry = {
               "Runge-Kutta and Runge-Kutta-Nystroem methods, J. Comput. Appl. "
               "Math. 142 (2002) 313-330, table 3, SRKN 11 b; kick first",
     .order = 6,
-    .stages = 11,
-    .gradients = 11,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_YES,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE | NEVH_QUADRATIC_KINETIC,
-    .kernel = &nevh_splitting_kernel,
-    .table = &eleven,
+    NEVH__SPLITTING_FOR(NEVH_SEPARABLE | NEVH_QUADRATIC_KINETIC, 11, eleven),
 };
 NEVH__PUBLISH(rkn11b);
 
@@ -93,14 +79,7 @@ const nevh_integrator nevh__rkn14a_entry = {
               "Runge-Kutta and Runge-Kutta-Nystroem methods, J. Comput. Appl. "
               "Math. 142 (2002) 313-330, table 3, SRKN 14 a; drift first",
     .order = 6,
-    .stages = 14,
-    .gradients = 14,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_YES,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE | NEVH_QUADRATIC_KINETIC,
-    .kernel = &nevh_splitting_kernel,
-    .table = &fourteen,
+    NEVH__SPLITTING_FOR(NEVH_SEPARABLE | NEVH_QUADRATIC_KINETIC, 14, fourteen),
 };
 NEVH__PUBLISH(rkn14a);

@@ -32,11 +32,6 @@ const nevh_integrator nevh__dopri5_entry = {
     .stages = 7,
     .gradients = 6,
     .adaptive = true,
-    .symplectic = NEVH_NO,
-    .symmetric = NEVH_NO,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .kernel = &nevh_runge_kutta_kernel,
-    .table = &table,
+    NEVH__EXPLICIT_RUNGE_KUTTA(table),
 };
 NEVH__PUBLISH(dopri5);

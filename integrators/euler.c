@@ -12,11 +12,6 @@ const nevh_integrator nevh__euler_entry = {
     .order = 1,
     .stages = 1,
     .gradients = 1,
-    .symplectic = NEVH_NO,
-    .symmetric = NEVH_NO,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .kernel = &nevh_runge_kutta_kernel,
-    .table = &table,
+    NEVH__EXPLICIT_RUNGE_KUTTA(table),
 };
 NEVH__PUBLISH(euler);

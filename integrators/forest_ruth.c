@@ -15,14 +15,7 @@ const nevh_integrator nevh__forest_ruth_entry = {
     .source = "E. Forest, R. D. Ruth, Fourth-order symplectic integration, "
               "Physica D 43 (1990) 105-117, eq. (4.8); kick first",
     .order = 4,
-    .stages = 3,
-    .gradients = 3,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_YES,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE,
-    .kernel = &nevh_splitting_kernel,
-    .table = &table,
+    NEVH__SPLITTING(3, table),
 };
 NEVH__PUBLISH(forest_ruth);

@@ -19,15 +19,8 @@ const nevh_integrator nevh__kahan_li6_entry = {
               "orders of unconventional schemes for ordinary differential "
               "equations, Math. Comp. 66 (1997) 1089-1099, s9odr6a; kick first",
     .order = 6,
-    .stages = 9,
-    .gradients = 9,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_YES,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE,
-    .kernel = &nevh_splitting_kernel,
-    .table = &nine,
+    NEVH__SPLITTING(9, nine),
 };
 NEVH__PUBLISH(kahan_li6);
 
@@ -52,14 +45,7 @@ const nevh_integrator nevh__kahan_li8_entry = {
               "equations, Math. Comp. 66 (1997) 1089-1099, s17odr8a; kick "
               "first",
     .order = 8,
-    .stages = 17,
-    .gradients = 17,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_YES,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE,
-    .kernel = &nevh_splitting_kernel,
-    .table = &seventeen,
+    NEVH__SPLITTING(17, seventeen),
 };
 NEVH__PUBLISH(kahan_li8);

@@ -21,15 +21,8 @@ const nevh_integrator nevh__mclachlan_sb3a4_entry = {
               "differential equations by symmetric composition methods, SIAM "
               "J. Sci. Comput. 16 (1995) 151-168, SB3A, m = 4; drift first",
     .order = 4,
-    .stages = 4,
-    .gradients = 4,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_YES,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE,
-    .kernel = &nevh_splitting_kernel,
-    .table = &four,
+    NEVH__SPLITTING(4, four),
 };
 NEVH__PUBLISH(mclachlan_sb3a4);
 
@@ -50,14 +43,7 @@ const nevh_integrator nevh__mclachlan_sb3a5_entry = {
               "differential equations by symmetric composition methods, SIAM "
               "J. Sci. Comput. 16 (1995) 151-168, SB3A, m = 5; drift first",
     .order = 4,
-    .stages = 5,
-    .gradients = 5,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_YES,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE,
-    .kernel = &nevh_splitting_kernel,
-    .table = &five,
+    NEVH__SPLITTING(5, five),
 };
 NEVH__PUBLISH(mclachlan_sb3a5);

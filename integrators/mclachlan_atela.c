@@ -23,14 +23,7 @@ const nevh_integrator nevh__mclachlan_atela4_entry = {
     .source = "R. I. McLachlan, P. Atela, The accuracy of symplectic "
               "integrators, Nonlinearity 5 (1992) 541-562, table 2; kick first",
     .order = 4,
-    .stages = 4,
-    .gradients = 4,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_NO,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE | NEVH_QUADRATIC_KINETIC,
-    .kernel = &nevh_splitting_kernel,
-    .table = &table,
+    NEVH__SPLITTING_FOR(NEVH_SEPARABLE | NEVH_QUADRATIC_KINETIC, 4, table),
 };
 NEVH__PUBLISH(mclachlan_atela4);

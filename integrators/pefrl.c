@@ -22,14 +22,7 @@ const nevh_integrator nevh__pefrl_entry = {
               "many-body systems, Comput. Phys. Commun. 146 (2002) 188-202; "
               "drift first",
     .order = 4,
-    .stages = 4,
-    .gradients = 4,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_YES,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE,
-    .kernel = &nevh_splitting_kernel,
-    .table = &table,
+    NEVH__SPLITTING(4, table),
 };
 NEVH__PUBLISH(pefrl);

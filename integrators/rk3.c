@@ -19,11 +19,6 @@ const nevh_integrator nevh__rk3_entry = {
     .order = 3,
     .stages = 3,
     .gradients = 3,
-    .symplectic = NEVH_NO,
-    .symmetric = NEVH_NO,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .kernel = &nevh_runge_kutta_kernel,
-    .table = &table,
+    NEVH__EXPLICIT_RUNGE_KUTTA(table),
 };
 NEVH__PUBLISH(rk3);

@@ -20,11 +20,6 @@ const nevh_integrator nevh__rk4_entry = {
     .order = 4,
     .stages = 4,
     .gradients = 4,
-    .symplectic = NEVH_NO,
-    .symmetric = NEVH_NO,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .kernel = &nevh_runge_kutta_kernel,
-    .table = &table,
+    NEVH__EXPLICIT_RUNGE_KUTTA(table),
 };
 NEVH__PUBLISH(rk4);

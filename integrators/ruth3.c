@@ -12,14 +12,7 @@ const nevh_integrator nevh__ruth3_entry = {
     .source = "R. D. Ruth, A canonical integration technique, IEEE Trans. "
               "Nucl. Sci. 30 (1983) 2669-2671; kick first",
     .order = 3,
-    .stages = 3,
-    .gradients = 3,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_NO,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE,
-    .kernel = &nevh_splitting_kernel,
-    .table = &table,
+    NEVH__SPLITTING(3, table),
 };
 NEVH__PUBLISH(ruth3);

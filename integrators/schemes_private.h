@@ -5,6 +5,22 @@
 
 #include <nevh/extend.h>
 
+/* The claims of all splittings, and of all explicit Runge-Kutta methods, in their
+   descriptors.
+   structure  of H, beyond which a splitting would lose its order
+   steps      its stages, each with one gradient
+   method     its table */
+#define NEVH__SPLITTING_FOR(structure, steps, method)                          \
+    .stages = (steps), .gradients = (steps), .symplectic = NEVH_YES,           \
+    .explicit_form = NEVH_YES, .preserves_energy = NEVH_NO,                    \
+    .needs = (structure), .kernel = &nevh_splitting_kernel, .table = &(method)
+#define NEVH__SPLITTING(steps, method)                                         \
+    NEVH__SPLITTING_FOR(NEVH_SEPARABLE, steps, method)
+#define NEVH__EXPLICIT_RUNGE_KUTTA(method)                                     \
+    .symplectic = NEVH_NO, .symmetric = NEVH_NO, .explicit_form = NEVH_YES,    \
+    .preserves_energy = NEVH_NO, .kernel = &nevh_runge_kutta_kernel,           \
+    .table = &(method)
+
 #define NEVH__SCHEMES(X)                                                       \
     X(symplectic_euler_a)                                                      \
     X(symplectic_euler_b)                                                      \

@@ -33,14 +33,7 @@ const nevh_integrator nevh__sofroniou_spaletta10_entry = {
               "(2005) 597-613; E. Hairer, C. Lubich, G. Wanner, Geometric "
               "Numerical Integration, eq. (V.3.15); kick first",
     .order = 10,
-    .stages = 35,
-    .gradients = 35,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_YES,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE,
-    .kernel = &nevh_splitting_kernel,
-    .table = &table,
+    NEVH__SPLITTING(35, table),
 };
 NEVH__PUBLISH(sofroniou_spaletta10);

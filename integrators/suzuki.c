@@ -16,14 +16,7 @@ const nevh_integrator nevh__suzuki4_entry = {
               "applications to many-body theories and Monte Carlo "
               "simulations, Phys. Lett. A 146 (1990) 319-323; kick first",
     .order = 4,
-    .stages = 5,
-    .gradients = 5,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_YES,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE,
-    .kernel = &nevh_splitting_kernel,
-    .table = &table,
+    NEVH__SPLITTING(5, table),
 };
 NEVH__PUBLISH(suzuki4);

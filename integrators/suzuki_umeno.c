@@ -26,14 +26,7 @@ const nevh_integrator nevh__suzuki_umeno8_entry = {
               "Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, "
               "eq. (V.3.13); kick first",
     .order = 8,
-    .stages = 15,
-    .gradients = 15,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_YES,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE,
-    .kernel = &nevh_splitting_kernel,
-    .table = &table,
+    NEVH__SPLITTING(15, table),
 };
 NEVH__PUBLISH(suzuki_umeno8);

@@ -14,15 +14,8 @@ const nevh_integrator nevh__symplectic_euler_a_entry = {
               "contact transformation property of the Hamilton equations, "
               "Notre Dame report 4 (1956); kick, then drift",
     .order = 1,
-    .stages = 1,
-    .gradients = 1,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_NO,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE,
-    .kernel = &nevh_splitting_kernel,
-    .table = &kick_drift,
+    NEVH__SPLITTING(1, kick_drift),
 };
 NEVH__PUBLISH(symplectic_euler_a);
 
@@ -33,14 +26,7 @@ const nevh_integrator nevh__symplectic_euler_b_entry = {
               "contact transformation property of the Hamilton equations, "
               "Notre Dame report 4 (1956); drift, then kick",
     .order = 1,
-    .stages = 1,
-    .gradients = 1,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_NO,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE,
-    .kernel = &nevh_splitting_kernel,
-    .table = &drift_kick,
+    NEVH__SPLITTING(1, drift_kick),
 };
 NEVH__PUBLISH(symplectic_euler_b);

@@ -14,15 +14,8 @@ const nevh_integrator nevh__verlet_entry = {
               "integration illustrated by the Stoermer-Verlet method, Acta "
               "Numerica 12 (2003) 399, eq. (1.15); kick, drift, kick",
     .order = 2,
-    .stages = 1,
-    .gradients = 1,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_YES,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE,
-    .kernel = &nevh_splitting_kernel,
-    .table = &kick_first,
+    NEVH__SPLITTING(1, kick_first),
 };
 NEVH__PUBLISH(verlet);
 
@@ -33,14 +26,7 @@ const nevh_integrator nevh__position_verlet_entry = {
               "time scale molecular dynamics, J. Chem. Phys. 97 (1992) 1990, "
               "eq. (2.22); drift, kick, drift",
     .order = 2,
-    .stages = 1,
-    .gradients = 1,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_YES,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE,
-    .kernel = &nevh_splitting_kernel,
-    .table = &drift_first,
+    NEVH__SPLITTING(1, drift_first),
 };
 NEVH__PUBLISH(position_verlet);

@@ -17,14 +17,7 @@ const nevh_integrator nevh__yoshida6_entry = {
               "integrators, Phys. Lett. A 150 (1990) 262-268, table 1, "
               "solution A; kick first",
     .order = 6,
-    .stages = 7,
-    .gradients = 7,
-    .symplectic = NEVH_YES,
     .symmetric = NEVH_YES,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .needs = NEVH_SEPARABLE,
-    .kernel = &nevh_splitting_kernel,
-    .table = &table,
+    NEVH__SPLITTING(7, table),
 };
 NEVH__PUBLISH(yoshida6);

@@ -144,6 +144,7 @@ tests_expression_check_formula_extremes_LDADD = $(INSIDE_LIBS)
 tests_expression_check_random_terms_LDADD = $(INSIDE_LIBS)
 tests_robust_check_hard_pendulum_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_tool_check_grid_SOURCES = tests/tool/check_grid.c tools/search/grid.c
+tests_tool_check_plot_thin_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE
 tests_tool_check_plot_thin_SOURCES = tests/tool/check_plot_thin.c \
 	tools/plot/plot_thin.c \
 	tools/cli/memory.c \

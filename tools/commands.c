@@ -28,11 +28,10 @@ static int refuse_option(const command *c, const option_row *row) {
     for (size_t i = 0; commands[i]; i++)
         if (command_takes(commands[i], row))
             list_add(&those, commands[i]->name);
-    char *text = list_joined(&those);
     return tool_refuse(those.count <= FEW ? "--%s is no option of nevh "
                                             "%s; it is for %s"
                                           : "--%s is no option of nevh %s",
-                       row->name, c->name, text);
+                       row->name, c->name, list_joined(&those));
 }
 
 static bool draws(const command *c, const char *kind) {
@@ -49,10 +48,9 @@ static int check_plot_kind(const command *c, const char *kind) {
     for (size_t i = 0; commands[i]; i++)
         if (draws(commands[i], kind))
             list_print(&those, "nevh %s", commands[i]->name);
-    char *others = list_sentence(&those, "and");
-    char *usual = list_sentence(&kinds, "or");
     tool_refuse("--plot-kind %s is for %s; of nevh %s it is %s, or not given",
-                kind, others, c->name, usual);
+                kind, list_sentence(&those, "and"), c->name,
+                list_sentence(&kinds, "or"));
     return TOOL_USAGE;
 }
 

@@ -136,8 +136,7 @@ static void print_parts(const char *name, const char *before, const char *text,
     if (text)
         list_split_at(&parts, text, mark);
     for (size_t i = 0; i < parts.count; i++) {
-        char *part = text_print("%s%s", before, parts.item[i]);
-        print_member(i ? ", " : "", part);
+        print_member(i ? ", " : "", text_print("%s%s", before, parts.item[i]));
     }
     fputs(text ? "]" : "", stdout);
 }

@@ -250,11 +250,15 @@ const char *nevh_scene_message(const nevh_scene *s) {
 
 /* A scene that was read starts each change afresh. */
 bool nevh__scene_begin(nevh_scene *s) {
-    if (!s->model)
+    if (!s || !s->model)
         return false;
     s->status = NEVH_OK;
     s->message[0] = '\0';
     return true;
+}
+
+int nevh__scene_fault(const nevh_scene *s) {
+    return s ? s->status : NEVH_EINVAL;
 }
 
 /* NAME = FORMULA as a statement of its own, for which there is room in a list
@@ -313,10 +317,8 @@ static int keep_if_fine(nevh_scene *s, nevh__statement *statement, bool fine,
 }
 
 int nevh_scene_set(nevh_scene *s, const char *assignment) {
-    if (!s)
-        return NEVH_EINVAL;
     if (!nevh__scene_begin(s))
-        return s->status;
+        return nevh__scene_fault(s);
     nevh__statement *statement =
         new_assignment(s, assignment, &s->assignments, s->n_assignments);
     if (!statement)
@@ -327,10 +329,8 @@ int nevh_scene_set(nevh_scene *s, const char *assignment) {
 }
 
 int nevh_scene_set_start(nevh_scene *s, const char *assignment) {
-    if (!s)
-        return NEVH_EINVAL;
     if (!nevh__scene_begin(s))
-        return s->status;
+        return nevh__scene_fault(s);
     nevh__statement *statement =
         new_assignment(s, assignment, &s->starts, s->n_starts);
     if (!statement)
@@ -340,10 +340,8 @@ int nevh_scene_set_start(nevh_scene *s, const char *assignment) {
 }
 
 int nevh_scene_vary(nevh_scene *s, const char *const lines[], size_t count) {
-    if (!s)
-        return NEVH_EINVAL;
     if (!nevh__scene_begin(s))
-        return s->status;
+        return nevh__scene_fault(s);
     size_t before = s->n_varies;
     for (size_t i = 0; !s->status && i < count; i++) {
         nevh__statement *statement =
@@ -375,51 +373,36 @@ static nevh__piece *new_piece(nevh_scene *s, const char *text) {
 }
 
 int nevh_scene_number(nevh_scene *s, const char *formula, double *number) {
-    if (!s)
-        return NEVH_EINVAL;
     if (!nevh__scene_begin(s))
-        return s->status;
+        return nevh__scene_fault(s);
     nevh__piece *piece = new_piece(s, formula);
     return piece && nevh__piece_number(s, s->model, piece, number) ? NEVH_OK
                                                                    : s->status;
 }
 
-int nevh_scene_set_transform(nevh_scene *s, const char *formula) {
-    if (!s)
-        return NEVH_EINVAL;
-    if (!nevh__scene_begin(s))
-        return s->status;
-    const nevh__piece *before = s->transform;
-    nevh__piece *piece = new_piece(s, formula);
+/* Takes the model anew with another text, or keeps both as they are. */
+static int set_piece(nevh_scene *s, const nevh__piece **of, const char *text) {
+    const nevh__piece *before = *of;
+    nevh__piece *piece = new_piece(s, text);
     if (!piece)
         return s->status;
-    s->transform = piece;
+    *of = piece;
     nevh__scene_model *model = new_model(s, DOUBLES);
-    if (!model) {
-        s->transform = before;
-        return s->status;
-    }
-    take_model(s, model);
-    return NEVH_OK;
+    if (model)
+        take_model(s, model);
+    else
+        *of = before;
+    return model ? NEVH_OK : s->status;
+}
+
+int nevh_scene_set_transform(nevh_scene *s, const char *formula) {
+    return nevh__scene_begin(s) ? set_piece(s, &s->transform, formula)
+                                : nevh__scene_fault(s);
 }
 
 int nevh_scene_set_outcomes(nevh_scene *s, const char *outcomes) {
-    if (!s)
-        return NEVH_EINVAL;
-    if (!nevh__scene_begin(s))
-        return s->status;
-    const nevh__piece *before = s->outcomes;
-    nevh__piece *piece = new_piece(s, outcomes);
-    if (!piece)
-        return s->status;
-    s->outcomes = piece;
-    nevh__scene_model *model = new_model(s, DOUBLES);
-    if (!model) {
-        s->outcomes = before;
-        return s->status;
-    }
-    take_model(s, model);
-    return NEVH_OK;
+    return nevh__scene_begin(s) ? set_piece(s, &s->outcomes, outcomes)
+                                : nevh__scene_fault(s);
 }
 
 int nevh_scene_set_judged(nevh_scene *s, const char *formula) {
@@ -437,10 +420,8 @@ int nevh_scene_set_judged(nevh_scene *s, const char *formula) {
 }
 
 int nevh_scene_enable(nevh_scene *s, const char *effect, bool on) {
-    if (!s)
-        return NEVH_EINVAL;
     if (!nevh__scene_begin(s))
-        return s->status;
+        return nevh__scene_fault(s);
     nevh__switch *found = nevh__scene_find_effect(s, effect);
     if (!found || (on && !nevh__scene_load_code(s, effect)))
         return s->status;

@@ -331,6 +331,8 @@ const char *nevh__effect_not_finite(const nevh_system *, double t,
 
 /* False if a scene cannot be used; else forgets its last failure. */
 bool nevh__scene_begin(nevh_scene *);
+/* The status where it does not begin: of NULL, too. */
+int nevh__scene_fault(const nevh_scene *);
 
 /* Which effects there are and which are on. */
 bool nevh__scene_effects(nevh_scene *);

@@ -180,10 +180,8 @@ int nevh_scene_section_cross(nevh_scene *s, size_t i, double t,
 int nevh_scene_section_items(nevh_scene *s, size_t i, double t,
                              const double q[], const double p[],
                              double values[]) {
-    if (!s)
-        return NEVH_EINVAL;
     if (!nevh__scene_begin(s))
-        return s->status;
+        return nevh__scene_fault(s);
     if (i >= s->model->n_crossings)
         return NEVH_EINVAL;
     nevh__crossing *crossing = &s->model->crossings[i];

@@ -47,10 +47,8 @@ const char *nevh_scene_shown_name(const nevh_scene *s, nevh_shown which,
 int nevh_scene_shown_values(nevh_scene *s, nevh_shown which, double t,
                             const double q[], const double p[],
                             double values[]) {
-    if (!s)
-        return NEVH_EINVAL;
     if (!nevh__scene_begin(s))
-        return s->status;
+        return nevh__scene_fault(s);
     const nevh__items *all = &s->model->shown[which];
     nevh__state at = {t, q, p, false};
     for (size_t k = 0, i = 0; k < all->count; k++)
@@ -92,10 +90,8 @@ nevh_scene_part nevh_scene_part_at(const nevh_scene *s, size_t i) {
 
 int nevh_scene_part_values(nevh_scene *s, size_t i, double t, const double q[],
                            const double p[], double values[]) {
-    if (!s)
-        return NEVH_EINVAL;
     if (!nevh__scene_begin(s))
-        return s->status;
+        return nevh__scene_fault(s);
     if (i >= s->model->n_drawn)
         return NEVH_EINVAL;
     nevh__drawn *part = &s->model->drawn[i];

@@ -43,9 +43,7 @@ static int list_integrators(table *t, const options *o) {
                     "energy\nkept,adap-\ntive,gra-\ndients,needs H =");
     table_break(t);
     if (o->all) {
-        table_column(t, "native");
-        table_column(t, "elsewhere");
-        table_column(t, "source");
+        table_titles(t, "native,elsewhere,source");
     }
     for (size_t i = 0; nevh_integrators()[i]; i++)
         add_integrator(t, nevh_integrators()[i], o->all);

@@ -5,13 +5,13 @@
 #include <stdlib.h>
 #include <time.h>
 
-static int by_size(const void *a, const void *b) {
+int numbers_compare(const void *a, const void *b) {
     double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
 }
 
 void numbers_sort(double numbers[], size_t count) {
-    qsort(numbers, count, sizeof *numbers, by_size);
+    qsort(numbers, count, sizeof *numbers, numbers_compare);
 }
 
 double numbers_median(double numbers[], size_t count) {
@@ -28,11 +28,19 @@ const char *number_text(char text[NUMBER_SIZE], double number) {
     return text;
 }
 
-double cpu_seconds(void) {
+static double seconds_by(clockid_t clock) {
     struct timespec now;
-    /* The clock of the process counts in ticks under a limit of CPU time. */
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    clock_gettime(clock, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* The clock of the process counts in ticks under a limit of CPU time. */
+double cpu_seconds(void) {
+    return seconds_by(CLOCK_THREAD_CPUTIME_ID);
+}
+
+double wall_seconds(void) {
+    return seconds_by(CLOCK_MONOTONIC);
 }
 
 /* FNV-1a, 64 bits [G. Fowler, L. C. Noll, K.-P. Vo; draft-eastlake-fnv]: a

@@ -199,10 +199,14 @@ static void forget(output *o) {
         close(o->former);
 }
 
-FILE *regular_open(const char *name) {
+bool file_is_regular(int file) {
     struct stat found;
+    return fstat(file, &found) == 0 && S_ISREG(found.st_mode);
+}
+
+FILE *regular_open(const char *name) {
     int file = open(name, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (file >= 0 && fstat(file, &found) == 0 && S_ISREG(found.st_mode))
+    if (file >= 0 && file_is_regular(file))
         return fdopen(file, "rb");
     if (file >= 0)
         close(file);

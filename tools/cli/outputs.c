@@ -42,8 +42,7 @@ static bool places_are_same(const char *a, const char *b) {
 }
 
 static bool is_same_place(const char *a, const char *b) {
-    char *first = follow(a), *second = follow(b);
-    return places_are_same(first, second);
+    return places_are_same(follow(a), follow(b));
 }
 
 /* True if two names belong to one regular file, or would create one. */

@@ -339,9 +339,7 @@ int scene_open_named(nevh_scene **scene, const char *name, const options *o) {
     if (!file)
         return TOOL_USAGE;
     *scene = read_switched(file, o);
-    bool good =
-        *scene && !outputs_check(o, *scene, file) && !apply_options(*scene, o);
-    if (good)
+    if (*scene && !outputs_check(o, *scene, file) && !apply_options(*scene, o))
         return TOOL_OK;
     if (!*scene)
         tool_refuse("out of memory");

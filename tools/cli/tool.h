@@ -155,6 +155,7 @@ __attribute__((format(printf, 1, 2))) int tool_refuse(const char *format, ...);
 int tool_unknown(const char *kind, const char *name, const list *known);
 
 /* numbers.c */
+int numbers_compare(const void *, const void *); /* doubles, as qsort asks */
 void numbers_sort(double[], size_t count);
 double numbers_median(double[], size_t count); /* sorts them; 0 of none */
 enum { NUMBER_SIZE = 32 };
@@ -162,6 +163,7 @@ enum { NUMBER_SIZE = 32 };
    `text`. */
 const char *number_text(char text[NUMBER_SIZE], double number);
 double cpu_seconds(void);
+double wall_seconds(void);
 uint64_t digest_begin(void);
 uint64_t digest_add(uint64_t digest, const void *bytes, size_t count);
 
@@ -368,6 +370,7 @@ void signal_end(int number);
    handlers of signals may. */
 /* A child that is to end with this program; 0: it has ended. */
 void output_child(pid_t);
+bool file_is_regular(int file);
 /* A file to read, or NULL where it is none: a pipe or a device may have no end. */
 FILE *regular_open(const char *name);
 void output_leave(void (*leave)(int number));

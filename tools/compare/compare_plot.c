@@ -45,12 +45,11 @@ static void note_failed(const plan *p, const row rows[], size_t count,
         const row *r = &rows[i];
         if (!r->failed || r->ran)
             continue;
-        char *step = heading(p, r);
         text_extend(words, "%s%s, %s",
                     any       ? "; "
                     : **words ? "; failed: "
                               : "failed: ",
-                    r->integrator, step);
+                    r->integrator, heading(p, r));
         any = true;
     }
 }

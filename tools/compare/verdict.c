@@ -32,9 +32,9 @@ static void common_words(const row rows[], size_t count, nevh_verdict verdict,
     for (size_t i = 0; i < count; i++)
         if (always(rows, count, i, verdict))
             list_add(&names, rows[i].integrator);
-    char *text = list_joined(&names);
     if (names.count)
-        list_print(words, "%s %s", text, names.count == 1 ? one : many);
+        list_print(words, "%s %s", list_joined(&names),
+                   names.count == 1 ? one : many);
 }
 
 static bool same_place(const row *a, const row *b) {
@@ -92,8 +92,7 @@ static char *step_of(const plan *p, const row *r) {
 
 char *verdict_subject(const plan *p, const row rows[], size_t count,
                       const row *r) {
-    char *name = name_of(rows, count, r), *place = step_of(p, r);
-    return text_print("%s at %s", name, place);
+    return text_print("%s at %s", name_of(rows, count, r), step_of(p, r));
 }
 
 /* When the drifting error passes, or would pass, the bounded one. */
@@ -159,13 +158,13 @@ static void line_words(const plan *p, const row rows[], size_t count,
 
 static void later_line_words(const plan *p, const row *r, const char *subject,
                              list *words) {
-    char *drifts = drift_of(&r->longer), *slope = slope_of(p, &r->longer);
     char *until = verdict_until(p, r);
     list_print(words,
                "%s has an energy error of at most %.1e in the run; continued "
                "until t = %s it %s%s (%s).",
-               subject, r->energy.max, until, drifts,
-               p->balance ? " against the balance" : "", slope);
+               subject, r->energy.max, until, drift_of(&r->longer),
+               p->balance ? " against the balance" : "",
+               slope_of(p, &r->longer));
 }
 
 static void drift_words(const plan *p, const row rows[], size_t count,
@@ -196,7 +195,6 @@ static void large_error_words(const plan *p, const row rows[], size_t count,
                       r->energy.scale >= DBL_MIN;
         if (!(verdict_is(r, NEVH_BOUNDED) || hidden) || !(r->energy.max > 1))
             continue;
-        char *name = name_of(rows, count, r), *place = step_of(p, r);
         list_print(words,
                    rounded ? "%s at %s: the error, up to %.2g times the energy "
                              "scale, is rounding: far larger energies cancel "
@@ -204,7 +202,7 @@ static void large_error_words(const plan *p, const row rows[], size_t count,
                            : "%s at %s: the error is bounded but large, up to "
                              "%.2g times the energy scale: take a shorter "
                              "step.",
-                   name, place, r->energy.max);
+                   name_of(rows, count, r), step_of(p, r), r->energy.max);
     }
 }
 
@@ -256,9 +254,9 @@ static void partial_words(const row rows[], size_t count,
         if (!list_has(&places, place))
             list_add(&places, place);
     }
-    char *joined = list_joined(&places);
     if (places.count)
-        list_print(words, "%s %s at %s.", integrator, text[verdict], joined);
+        list_print(words, "%s %s at %s.", integrator, text[verdict],
+                   list_joined(&places));
 }
 
 /* Row i, where it is the first of its integrator, whose rows differ. */

@@ -15,13 +15,12 @@ char *verdict_until(const plan *p, const row *r) {
 /* The outcome of a calm run when it is continued. */
 void verdict_later_words(const plan *p, const row rows[], size_t count,
                          const row *r, list *words) {
-    char *subject = verdict_subject(p, rows, count, r);
     char *until = verdict_until(p, r);
     list_print(words,
                "%s: the energy error is at most %.1e in the run, but "
                "grows past every energy the system started with when the run "
                "is continued until t = %s.",
-               subject, r->energy.max, until);
+               verdict_subject(p, rows, count, r), r->energy.max, until);
 }
 
 /* Two digits upwards. */
@@ -136,12 +135,12 @@ void verdict_larger_words(const plan *p, const row rows[], size_t count,
             verdict_later_words(p, rows, count, r, words);
             continue;
         }
-        char *subject = verdict_subject(p, rows, count, r);
         char *until = verdict_until(p, r);
         list_print(words,
                    "%s: the energy error is at most %.1e in the run, and "
                    "%.1e when it is continued until t = %s%s.",
-                   subject, r->energy.max, r->longer.max, until,
+                   verdict_subject(p, rows, count, r), r->energy.max,
+                   r->longer.max, until,
                    leaves ? ", where its energies are far larger"
                    : above
                        ? ", above all energies of the motion, and level since"

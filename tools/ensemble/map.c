@@ -99,11 +99,6 @@ void map_take(map *m, uint64_t member, nevh_member_status status,
         to[m->varied] = NAN;
 }
 
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static direction direction_of(const map *m, size_t column) {
     direction d = {column, 0, tool_allocate(m->members, sizeof(double))};
     size_t count = 0;
@@ -112,7 +107,7 @@ static direction direction_of(const map *m, size_t column) {
         if (isfinite(x))
             d.value[count++] = x;
     }
-    qsort(d.value, count, sizeof *d.value, by_size);
+    numbers_sort(d.value, count);
     for (size_t i = 0; i < count; i++)
         if (i == 0 || d.value[i] > d.value[d.count - 1])
             d.value[d.count++] = d.value[i];
@@ -120,7 +115,8 @@ static direction direction_of(const map *m, size_t column) {
 }
 
 static size_t place_of(const direction *d, double x) {
-    const double *found = bsearch(&x, d->value, d->count, sizeof x, by_size);
+    const double *found =
+        bsearch(&x, d->value, d->count, sizeof x, numbers_compare);
     return found ? (size_t)(found - d->value) : d->count;
 }
 
@@ -231,8 +227,8 @@ static void take_rms(map *m, const direction *d, const double outcome[]) {
 }
 
 static plot *draw_line(map *m, const direction *d) {
-    char *x = label_of(m, d->column), *y = label_of(m, m->varied);
-    plot *to = plot_new(m->plan->title, x, y);
+    plot *to = plot_new(m->plan->title, label_of(m, d->column),
+                        label_of(m, m->varied));
     size_t series = plot_series(to, m->data.points ? "computed" : NULL),
            *order = tool_allocate(m->members, sizeof *order);
     double *outcome = tool_allocate(m->members, sizeof *outcome);
@@ -255,9 +251,9 @@ static plot *draw_line(map *m, const direction *d) {
 }
 
 static plot *draw_map(map *m, const direction d[2]) {
-    char *x = label_of(m, d[0].column), *y = label_of(m, d[1].column);
     char *z = label_of(m, m->varied);
-    plot *to = plot_new(m->plan->title, x, y);
+    plot *to = plot_new(m->plan->title, label_of(m, d[0].column),
+                        label_of(m, d[1].column));
     double *values = tool_allocate(m->members, sizeof *values), low, high;
     for (size_t i = 0; i < m->members; i++)
         values[i] = NAN;
@@ -303,14 +299,13 @@ int map_draw(map *m, const char *integrator) {
     plot *to = count == 2 ? draw_map(m, d) : draw_line(m, &d[0]);
     if (!to)
         return TOOL_USAGE;
-    char *scheme = plot_scheme(m->plan, integrator);
     char *more =
         m->missing ? text_print("%zu orbits, %zu without a value%s", m->members,
                                 m->missing, count == 2 ? " (hatched)" : "")
         : isnan(m->rms) ? text_print("%zu orbits", m->members)
                         : text_print("%zu orbits; rms of the residuals: %.3g",
                                      m->members, m->rms);
-    plot_note_run(to, m->plan, scheme, more);
+    plot_note_run(to, m->plan, plot_scheme(m->plan, integrator), more);
     return m->missing == m->members
                ? tool_refuse("nothing to draw: no member has a value")
                : plot_write(to, &m->options);

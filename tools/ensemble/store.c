@@ -178,17 +178,12 @@ static int not_on_a_disk(const store *s) {
     return tool_refuse("%s is no file on a disk, as an array must be", s->name);
 }
 
-static bool is_regular(int file) {
-    struct stat found;
-    return fstat(file, &found) == 0 && S_ISREG(found.st_mode);
-}
-
 static int open_locked(store *s) {
     s->file = open(s->name, O_RDWR | O_CLOEXEC);
     if (s->file < 0)
         return tool_refuse("there is nothing to resume: %s: %s", s->name,
                            strerror(errno));
-    if (!is_regular(s->file))
+    if (!file_is_regular(s->file))
         return not_on_a_disk(s);
     if (flock(s->file, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
         return tool_refuse("%s: another %s is writing it", s->name, writer);
@@ -255,7 +250,7 @@ static int begin_side(store *s) {
 
 static int begin_array(store *s) {
     s->file = fcntl(fileno(s->array.stream), F_DUPFD_CLOEXEC, 0);
-    if (!s->array.locks || !is_regular(s->file))
+    if (!s->array.locks || !file_is_regular(s->file))
         return not_on_a_disk(s);
     return check_unfinished(s, s->array.former) ? TOOL_USAGE : init(s);
 }

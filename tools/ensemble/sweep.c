@@ -16,12 +16,6 @@ static bool is_array(const options *o) {
     return length > 4 && strcmp(name + length - 4, ".npy") == 0;
 }
 
-static double seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 /* Running members. */
 
 static int make_sweep(sweep_job *j) {
@@ -108,7 +102,7 @@ static const char *status_word(nevh_member_status status) {
 }
 
 static void show_progress(sweep_job *j) {
-    double now = seconds();
+    double now = wall_seconds();
     uint64_t all = j->count;
     if (j->options->quiet || !isatty(STDERR_FILENO) || now < j->shown + 1)
         return;
@@ -144,7 +138,7 @@ void sweep_count(sweep_job *j, const nevh_sweep_result *r) {
 }
 
 void sweep_begin(sweep_job *j) {
-    j->begun = j->shown = seconds();
+    j->begun = j->shown = wall_seconds();
 }
 
 int sweep_end(const sweep_job *j, int status) {

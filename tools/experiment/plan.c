@@ -228,8 +228,8 @@ char *plan_title(const nevh_scene *scene, const char *name, const options *o) {
     char *title = text_print("%s", *own ? own : name);
     size_t changes = 0;
     for (size_t i = 0; i < o->settings.count; i++) {
-        char *change = change_of(o->settings.item[i]);
-        text_extend(&title, "%s%s", changes++ ? ", " : ", but ", change);
+        text_extend(&title, "%s%s", changes++ ? ", " : ", but ",
+                    change_of(o->settings.item[i]));
     }
     for (size_t i = 0; i < o->vary.count; i++) {
         const char *text = o->vary.item[i];

@@ -22,8 +22,9 @@ nevh_options plan_options(const plan *p, const char *gradient) {
 bool plan_parts_are_all(const plan *p) {
     size_t fast = 0, slow = 0, found = 0;
     for (size_t i = 0; i < nevh_system_effect_count(p->system); i++) {
-        const char *name = nevh_system_effect_name(p->system, i);
-        if (nevh_system_parts(p->system, name, &fast, &slow, NULL) || slow)
+        if (nevh_system_parts(p->system, nevh_system_effect_name(p->system, i),
+                              &fast, &slow, NULL) ||
+            slow)
             return false;
         found += fast;
     }

@@ -81,12 +81,11 @@ static void broken_words(const row rows[], size_t count, list *words) {
         if (has_shadow(&rows[i]) && rows[i].shadow.breaks_down)
             list_print(&broken, "%s at dt = %.4g", rows[i].integrator,
                        rows[i].dt);
-    char *text = list_joined(&broken);
     if (broken.count)
         list_print(words,
                    "The shadow of H breaks down for %s: such steps are too "
                    "long for its series.",
-                   text);
+                   list_joined(&broken));
 }
 
 void shadow_words(const plan *p, const row rows[], size_t count, list *words) {

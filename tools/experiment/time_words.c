@@ -67,12 +67,12 @@ static char *jumping(const plan *p) {
 
 void time_notes(const plan *p, list *notes) {
     size_t count;
-    char *times = jumps_text(p, &count), *names = jumping(p);
+    char *times = jumps_text(p, &count);
     if (count)
         list_print(notes,
                    "H jumps in time at t = %s (%s): a step that contains a "
                    "jump has an error of low order%s",
-                   times, names,
+                   times, jumping(p),
                    p->balance ? "; the balance counts the jump as energy from "
                                 "outside"
                               : "");
@@ -108,13 +108,12 @@ void time_words(const plan *p, const row rows[], size_t count, list *words) {
     double at = 0, least,
            shortest = nevh_timing_shortest(p->timing, &at, &effect);
     list names = too_long(rows, count, 2 * shortest, &least);
-    char *joined = list_joined(&names);
     if (names.count)
         list_print(words,
                    "%s changes within %.2g%s near t = %.6g%s: steps of "
                    "%.4g%s or longer pass over it (%s).",
                    effect, shortest, p->unit, at, p->unit, least, p->unit,
-                   joined);
+                   list_joined(&names));
 }
 
 double plan_ends(const plan *p) {

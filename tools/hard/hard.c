@@ -238,9 +238,9 @@ static int print_suite(const suite *all, const options *o) {
     for (int kind = 0; kind < HARD_KINDS; kind++)
         if (all->count[kind])
             list_print(&counts, "%zu %s", all->count[kind], kind_name(kind));
-    char *text = list_sentence(&counts, "and");
     list_print(o->format == FORMAT_CSV ? &result.before : &result.after,
-               "%zu cases, %zu rows: %s.", all->cases, all->rows, text);
+               "%zu cases, %zu rows: %s.", all->cases, all->rows,
+               list_sentence(&counts, "and"));
     return output_page(o, &result, TOOL_OK);
 }
 

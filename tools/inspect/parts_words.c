@@ -88,11 +88,11 @@ static void size_words(const plan *p, double ratio, list *notes) {
 static void all_words(const plan *p, double ratio, list *notes) {
     list fast = {0}, slow = {0};
     name_parts(p, &fast, &slow);
-    char *a = list_joined(&fast), *b = list_joined(&slow);
+    char *b = list_joined(&slow);
     list_print(notes,
                "Parts of H = A + B for schemes by parts: A, whose flow is "
                "exact: %s; B, which kicks: %s",
-               a, *b ? b : "nothing");
+               list_joined(&fast), *b ? b : "nothing");
     size_words(p, ratio, notes);
 }
 

@@ -14,11 +14,6 @@ bool flow_resolved(nevh_loop_area r) {
     return r.error <= certain * fabs(r.area);
 }
 
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Times that are not a whole step of the longest dt apart make the same row. */
 static void drop_equal_times(flow_job *j, size_t dts) {
     double longest = 0;
@@ -53,7 +48,7 @@ static int take_times(flow_job *j, const options *o) {
             equal ? (double)i / (double)(j->times - 1) : parts[i % USUAL_TIMES];
         j->time[i] = p->ats ? p->at[i - 1] : begin + (end - begin) * part;
     }
-    qsort(j->time, j->times, sizeof *j->time, by_size);
+    numbers_sort(j->time, j->times);
     if (p->ats && j->times > 1 && j->time[1] == begin)
         memmove(j->time + 1, j->time + 2, (--j->times - 1) * sizeof *j->time);
     if (!p->ats)
@@ -235,14 +230,10 @@ static table *shown(const flow_job *j) {
     char *dt = text_print("dt%s", j->plan.per_unit);
     char *time = text_print("t%s", j->plan.per_unit);
     table *t = table_new();
-    table_column(t, "integrator");
-    table_column(t, "sympl.");
+    table_titles(t, "integrator,sympl.");
     table_column(t, dt);
     table_column(t, time);
-    table_column(t, "area");
-    table_column(t, "area over\nthe first");
-    table_column(t, "points");
-    table_column(t, "status");
+    table_titles(t, "area,area over\nthe first,points,status");
     for (size_t i = 0; i < j->rows; i++)
         show_row(t, j, &j->row[i]);
     return t;

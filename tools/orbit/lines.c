@@ -17,11 +17,6 @@ static int unwritten(line_file *l) {
                        l->name ? l->name : "the output", strerror(errno));
 }
 
-static bool is_regular(int file) {
-    struct stat found;
-    return fstat(file, &found) == 0 && S_ISREG(found.st_mode);
-}
-
 static const char writer[] = "run";
 
 int lines_open(line_file *l, const char *name) {
@@ -34,7 +29,7 @@ int lines_open(line_file *l, const char *name) {
         return TOOL_USAGE;
     l->waits = true;
     l->file = fcntl(fileno(l->claimed.stream), F_DUPFD_CLOEXEC, 0);
-    l->regular = is_regular(l->file);
+    l->regular = file_is_regular(l->file);
     return l->file < 0 ? unwritten(l) : TOOL_OK;
 }
 
@@ -49,7 +44,7 @@ static int open_again(line_file *l, const char *name) {
     *l = (line_file){.name = name, .file = open(name, O_RDWR | O_CLOEXEC)};
     if (l->file < 0)
         return unwritten(l);
-    l->regular = is_regular(l->file);
+    l->regular = file_is_regular(l->file);
     if (l->regular && flock(l->file, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
         return tool_refuse("%s: another %s is writing it", name, writer);
     return TOOL_OK;

@@ -139,11 +139,6 @@ static portrait_window find_window(const portrait_job *j) {
     return w;
 }
 
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Chooses energies of members, if they are many; of a single member, energies up to
    it and beyond. */
 static size_t choose_levels(const portrait_job *j, double energy[MOST_LEVELS]) {
@@ -151,7 +146,7 @@ static size_t choose_levels(const portrait_job *j, double energy[MOST_LEVELS]) {
     double *all = tool_allocate(count, sizeof *all);
     for (size_t i = 0; i < count; i++)
         all[i] = levels_energy(&j->levels, j->members.q[i], j->members.p[i]);
-    qsort(all, count, sizeof *all, by_size);
+    numbers_sort(all, count);
     for (size_t i = 0; i < MOST_LEVELS && count > 1; i++) {
         double level = all[i * (count - 1) / (MOST_LEVELS - 1)];
         if (!chosen || level > energy[chosen - 1])

@@ -331,7 +331,6 @@ static size_t count_points(const section_job *j) {
 }
 
 static void add_note(const section_job *j, plot *to) {
-    char *scheme = plot_scheme(j->plan, j->integrator);
     char *energy = j->members.several
                        ? text_print("%zu orbits", j->members.count)
                        : plot_energy_at_start(j->plan);
@@ -340,7 +339,7 @@ static void add_note(const section_job *j, plot *to) {
                      : text_print("%s", "");
     char *more = text_print("%s%s%s%s", energy, from, j->ended ? "; " : "",
                             j->ended ? j->ended : "");
-    plot_note_run(to, j->plan, scheme, more);
+    plot_note_run(to, j->plan, plot_scheme(j->plan, j->integrator), more);
 }
 
 static void draw_series(const section_job *j, const series *s, plot **to,

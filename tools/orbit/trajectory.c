@@ -267,12 +267,6 @@ static int check_stop(trajectory *r, double t, const double q[],
     return status;
 }
 
-static double seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 /* Looks at the clock are rarer while steps are cheap, and at each step as soon as one
    is not. */
 static void pace(clockwork *c, double now) {
@@ -288,12 +282,12 @@ static void pace(clockwork *c, double now) {
 static int tick(trajectory *r) {
     clockwork *c = &r->clock;
     const trajectory_watch *w = c->watch;
-    double now = seconds();
+    double now = wall_seconds();
     pace(c, now);
     if (now < c->next)
         return TOOL_OK;
     int status = w->save ? w->save(w->data) : TOOL_OK;
-    double took = seconds() - now;
+    double took = wall_seconds() - now;
     c->next = now + took + fmax(between_saves, took / share_of_saves);
     c->shown = w->progress;
     if (c->shown)
@@ -391,7 +385,7 @@ static int run(trajectory *r) {
 }
 
 int trajectory_follow(trajectory *r, const trajectory_watch *watch) {
-    double begin = seconds();
+    double begin = wall_seconds();
     double last = fmax(fabs(r->plan->run->t_start), fabs(r->plan->t_end));
     r->clock = (clockwork){begin + between_saves, begin, 1, watch, false};
     if (!r->own_time && last + r->plan->dt[0] == last) {

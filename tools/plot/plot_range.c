@@ -37,11 +37,6 @@ static range own_extent(const plot *p, size_t number, range seen,
     return r;
 }
 
-static int compare_doubles(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static bool are_alike(const panel *a, const panel *b) {
     return strcmp(a->x, b->x) == 0 && strcmp(a->y, b->y) == 0;
 }
@@ -56,7 +51,7 @@ static double usual_length(const plot *p, size_t number, coordinate *of) {
             length[count++] = r.high - r.low;
     }
     if (count) {
-        qsort(length, count, sizeof *length, compare_doubles);
+        numbers_sort(length, count);
         usual = length[(count - 1) / 2];
     }
     return usual;

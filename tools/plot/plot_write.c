@@ -90,8 +90,8 @@ void plot_written_report(const options *o, const plan *p,
                          const char *integrator, size_t points) {
     if (o->quiet || !plot_replaces_rows(o) || !plot_goes_first(o))
         return;
-    char *scheme = plot_scheme(p, integrator);
-    printf("%s: %s", o->plot.file ? o->plot.file : o->plot.script, scheme);
+    printf("%s: %s", o->plot.file ? o->plot.file : o->plot.script,
+           plot_scheme(p, integrator));
     if (points)
         printf(", %zu points", points);
     puts("; -o FILE writes the rows as CSV");

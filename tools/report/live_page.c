@@ -165,8 +165,8 @@ static char *all_scenes(const options *o) {
         status = add_scene(f, o, o->operands.item[i]);
     }
     fputs("]\n", f);
-    char *scenes = text_close(&text);
-    return status ? NULL : scenes;
+    char *all = text_close(&text);
+    return status ? NULL : all;
 }
 
 static int live_page(const options *o) {

@@ -186,8 +186,7 @@ static report_part make_animation(const report_job *w, const kind_of_part *kind,
 static bool has_verdict(const report_part *part) {
     for (int v = 0; part->html && v <= NEVH_UNDECIDED; v++) {
         char *cell = text_print("<td>%s</td>", nevh_verdict_name(v));
-        bool found = strstr(part->html, cell);
-        if (found)
+        if (strstr(part->html, cell))
             return true;
     }
     return false;

@@ -72,8 +72,8 @@ bool cost_is_beyond(const costs *c, size_t target) {
 }
 
 static char *cell_text(const row *r, bool star) {
-    char *time = cost_milliseconds(r->seconds);
-    return text_print("%s %s (%.6g)", star ? "*" : " ", time, r->dt);
+    return text_print("%s %s (%.6g)", star ? "*" : " ",
+                      cost_milliseconds(r->seconds), r->dt);
 }
 
 const char *cost_word(const costs *c, const study *l, size_t target) {

@@ -66,11 +66,7 @@ static table *shown(const recommendation *a) {
     table_column(t, text_print("%s\nerror", search_error(&a->search)));
     if (has_states(a))
         table_column(t, "state\nerror");
-    table_column(t, "holds\nuntil t");
-    table_column(t, "ms");
-    table_column(t, "gradients");
-    table_column(t, "H evals");
-    table_column(t, "energy");
+    table_titles(t, "holds\nuntil t,ms,gradients,H evals,energy");
     const study *found[RECOMMEND_MOST];
     size_t count = recommend_list(a, found);
     for (size_t i = 0; i < count; i++)
@@ -357,10 +353,9 @@ int recommend_none(const recommendation *a) {
     }
     char *until = end < a->whole ? text_print(" until t = %g", end)
                                  : text_print("%s", "");
-    char *why = reason(a, l, least);
     tool_refuse("%s: nothing keeps the %s error below %g%s.  The least, %.1e,"
                 " is that of %s with the %s gradient; %s",
                 a->search.plan.name, what, a->target, until, least,
-                l->integrator, l->gradient, why);
+                l->integrator, l->gradient, reason(a, l, least));
     return TOOL_FAILED;
 }
