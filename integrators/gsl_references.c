@@ -3,6 +3,11 @@
 #include "kernels/gsl_private.h"
 #include "schemes_private.h"
 
+#define BY_GSL(method)                                                         \
+    .adaptive = true, .symplectic = NEVH_NO, .symmetric = NEVH_NO,             \
+    .explicit_form = NEVH_YES, .preserves_energy = NEVH_NO,                    \
+    .kernel = &nevh__gsl_kernel, .table = &(method)
+
 const nevh_integrator nevh__gsl_rkf45_entry = {
     .name = "gsl-rkf45",
     .aliases = "gsl_odeiv2_step_rkf45, fehlberg45",
@@ -11,13 +16,7 @@ const nevh_integrator nevh__gsl_rkf45_entry = {
     .order = 5,
     .stages = 6,
     .gradients = 6,
-    .adaptive = true,
-    .symplectic = NEVH_NO,
-    .symmetric = NEVH_NO,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .kernel = &nevh__gsl_kernel,
-    .table = &gsl_odeiv2_step_rkf45,
+    BY_GSL(gsl_odeiv2_step_rkf45),
 };
 NEVH__PUBLISH(gsl_rkf45);
 
@@ -29,13 +28,7 @@ const nevh_integrator nevh__gsl_rk8pd_entry = {
     .order = 8,
     .stages = 13,
     .gradients = 13,
-    .adaptive = true,
-    .symplectic = NEVH_NO,
-    .symmetric = NEVH_NO,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .kernel = &nevh__gsl_kernel,
-    .table = &gsl_odeiv2_step_rk8pd,
+    BY_GSL(gsl_odeiv2_step_rk8pd),
 };
 NEVH__PUBLISH(gsl_rk8pd);
 
@@ -47,13 +40,7 @@ const nevh_integrator nevh__gsl_msadams_entry = {
               "Software 1 (1975) 71-96; as in GSL, orders 1 to 12, P(EC)^m",
     .order = 12,
     .stages = 1,
-    .adaptive = true,
     .needs_tolerance = true,
-    .symplectic = NEVH_NO,
-    .symmetric = NEVH_NO,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .kernel = &nevh__gsl_kernel,
-    .table = &gsl_odeiv2_step_msadams,
+    BY_GSL(gsl_odeiv2_step_msadams),
 };
 NEVH__PUBLISH(gsl_msadams);

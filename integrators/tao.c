@@ -9,6 +9,13 @@
 #include "schemes_private.h"
 #include "kernels/tao_private.h"
 
+/* Claims hold in the extended phase space. */
+#define COMPOSED(steps, method)                                                \
+    .stages = (steps), .gradients = 3 * (steps), .symplectic = NEVH_EXTENDED,  \
+    .symmetric = NEVH_EXTENDED, .explicit_form = NEVH_YES,                     \
+    .preserves_energy = NEVH_NO, .kernel = &nevh__tao_kernel,                  \
+    .table = &(method)
+
 static const nevh_splitting once = {NEVH_KICK, NEVH_COMPOSITION, 0, NULL};
 
 const nevh_integrator nevh__tao2_entry = {
@@ -18,14 +25,7 @@ const nevh_integrator nevh__tao2_entry = {
               "Hamiltonians: algorithm and long time performance, Phys. Rev. "
               "E 94 (2016) 043303, sec. I",
     .order = 2,
-    .stages = 1,
-    .gradients = 3,
-    .symplectic = NEVH_EXTENDED,
-    .symmetric = NEVH_EXTENDED,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .kernel = &nevh__tao_kernel,
-    .table = &once,
+    COMPOSED(1, once),
 };
 NEVH__PUBLISH(tao2);
 
@@ -39,14 +39,7 @@ const nevh_integrator nevh__tao4_entry = {
     .aliases = "",
     .source = "M. Tao, Phys. Rev. E 94 (2016) 043303, sec. I: triple jump",
     .order = 4,
-    .stages = 3,
-    .gradients = 9,
-    .symplectic = NEVH_EXTENDED,
-    .symmetric = NEVH_EXTENDED,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .kernel = &nevh__tao_kernel,
-    .table = &triple_jump,
+    COMPOSED(3, triple_jump),
 };
 NEVH__PUBLISH(tao4);
 
@@ -66,13 +59,6 @@ const nevh_integrator nevh__tao6_entry = {
               "unconventional schemes for ordinary differential equations, "
               "Math. Comp. 66 (1997) 1089-1099, s9odr6a",
     .order = 6,
-    .stages = 9,
-    .gradients = 27,
-    .symplectic = NEVH_EXTENDED,
-    .symmetric = NEVH_EXTENDED,
-    .explicit_form = NEVH_YES,
-    .preserves_energy = NEVH_NO,
-    .kernel = &nevh__tao_kernel,
-    .table = &nine,
+    COMPOSED(9, nine),
 };
 NEVH__PUBLISH(tao6);

@@ -3,7 +3,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "models_private.h"
 #include "system/motion_private.h"
-#include <math.h>
 
 NEVH_BODY(kinetic, void, { return nevh_p(0) * nevh_p(0) / (2 * nevh_c(0)); })
 

@@ -18,7 +18,6 @@
 #include "gradient/field_private.h"
 #include "kepler_flow_private.h"
 #include "system/parts_private.h"
-#include <float.h>
 #include <tgmath.h>
 #include <stdlib.h>
 #include <string.h>

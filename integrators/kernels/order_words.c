@@ -10,7 +10,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Times exp(w letter), up to a degree. */
 static void multiply(long double series[], size_t degree, size_t letter,

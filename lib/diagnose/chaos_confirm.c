@@ -6,7 +6,6 @@
 #include <math.h>
 #include <nevh/diagnose.h>
 #include <stdio.h>
-#include <string.h>
 
 static const double tolerance = 1e-10, usual_seconds = 2;
 static const double usual_budget = 0.5, damped_budget = 4;

@@ -2,7 +2,6 @@
    between them, which are halved while a divisor may be zero.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/passage_private.h"
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

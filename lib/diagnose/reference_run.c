@@ -10,7 +10,6 @@
 #include "system/print_private.h"
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 static const double target = 1e-11; /* of the runs' difference */

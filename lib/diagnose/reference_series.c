@@ -10,7 +10,6 @@
 #include "taylor/orbit_private.h"
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

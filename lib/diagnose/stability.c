@@ -9,7 +9,6 @@
 #include <math.h>
 #include <nevh/diagnose.h>
 #include <nevh/extend.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double pi = 3.14159265358979323846;

@@ -1,7 +1,6 @@
 /* nevh: an ensemble is planned.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "ensemble/ensemble_private.h"
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

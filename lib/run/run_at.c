@@ -82,21 +82,10 @@ static int put_here(nevh__samples *a, double t, const double q[],
     return status;
 }
 
-static int sample_own(nevh__samples *a, double t, const double q[],
-                      const double p[]) {
-    int status = NEVH_OK;
-    if (is_due(a, t)) {
-        nevh__branch_keep(&a->now, t, q, p);
-        a->from.h = a->h;
-        status = nevh__branch_measure(&a->from);
-        if (!status)
-            status = branch_before(a, t);
-        nevh__branch_resume(&a->now);
-    }
-    if (!status)
-        status = put_here(a, t, q, p);
-    nevh__branch_keep(&a->from, t, q, p);
-    return status;
+static int read_own(nevh__samples *a, double t) {
+    a->from.h = a->h;
+    int status = nevh__branch_measure(&a->from);
+    return status ? status : branch_before(a, t);
 }
 
 /* True if memory holds the orbit within a step. */
@@ -126,14 +115,21 @@ static int read_next(nevh__samples *a) {
     return status;
 }
 
-static int sample_held(nevh__samples *a, double t, const double q[],
-                       const double p[]) {
+static int read_held(nevh__samples *a, double t) {
+    int status = NEVH_OK;
+    a->tried.t = NAN;
+    while (!status && is_due(a, t))
+        status = read_next(a);
+    return status;
+}
+
+/* The times before t as `read` finds their states, then t itself. */
+static int sample_by(nevh__samples *a, int (*read)(nevh__samples *, double t),
+                     double t, const double q[], const double p[]) {
     int status = NEVH_OK;
     if (is_due(a, t)) {
         nevh__branch_keep(&a->now, t, q, p);
-        a->tried.t = NAN;
-        while (!status && is_due(a, t))
-            status = read_next(a);
+        status = read(a, t);
         nevh__branch_resume(&a->now);
     }
     if (!status)
@@ -166,8 +162,9 @@ void nevh__samples_rest(nevh__samples *a, const double q[], const double p[]) {
 int nevh__samples_at(nevh__samples *a, double t, const double q[],
                      const double p[]) {
     if (is_held(a->stepper))
-        return sample_held(a, t, q, p);
-    return a->stepper->own_time ? sample_own(a, t, q, p) : put_here(a, t, q, p);
+        return sample_by(a, read_held, t, q, p);
+    return a->stepper->own_time ? sample_by(a, read_own, t, q, p)
+                                : put_here(a, t, q, p);
 }
 
 /* Fixed steps that need not be shown are those well before the next time. */

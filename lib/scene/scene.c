@@ -316,27 +316,27 @@ static int keep_if_fine(nevh_scene *s, nevh__statement *statement, bool fine,
     return NEVH_OK;
 }
 
-int nevh_scene_set(nevh_scene *s, const char *assignment) {
-    if (!nevh__scene_begin(s))
-        return nevh__scene_fault(s);
-    nevh__statement *statement =
-        new_assignment(s, assignment, &s->assignments, s->n_assignments);
+static int add_assignment(nevh_scene *s, const char *text,
+                          nevh__statement ***list, size_t *count,
+                          bool is_parameter) {
+    nevh__statement *statement = new_assignment(s, text, list, *count);
     if (!statement)
         return s->status;
-    s->assignments[s->n_assignments++] = statement;
-    return keep_if_fine(s, statement, check_assignment(s, statement),
-                        &s->n_assignments);
+    (*list)[(*count)++] = statement;
+    return keep_if_fine(s, statement,
+                        !is_parameter || check_assignment(s, statement), count);
+}
+
+int nevh_scene_set(nevh_scene *s, const char *assignment) {
+    return nevh__scene_begin(s) ? add_assignment(s, assignment, &s->assignments,
+                                                 &s->n_assignments, true)
+                                : nevh__scene_fault(s);
 }
 
 int nevh_scene_set_start(nevh_scene *s, const char *assignment) {
-    if (!nevh__scene_begin(s))
-        return nevh__scene_fault(s);
-    nevh__statement *statement =
-        new_assignment(s, assignment, &s->starts, s->n_starts);
-    if (!statement)
-        return s->status;
-    s->starts[s->n_starts++] = statement;
-    return keep_if_fine(s, statement, true, &s->n_starts);
+    return nevh__scene_begin(s)
+               ? add_assignment(s, assignment, &s->starts, &s->n_starts, false)
+               : nevh__scene_fault(s);
 }
 
 int nevh_scene_vary(nevh_scene *s, const char *const lines[], size_t count) {

@@ -6,7 +6,6 @@
    nearest.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/sweep_private.h"
-#include <float.h>
 #include <math.h>
 
 enum { MOST_STEPS = 120, MOST_TRIALS = 200 };

@@ -1,7 +1,6 @@
 /* nevh: whether varied parameters change more than where members start.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/sweep_private.h"
-#include <stdlib.h>
 #include <string.h>
 
 static bool same_bytes(const void *a, const void *b, size_t count,

@@ -3,7 +3,6 @@
 #include "system/system_private.h"
 #include "system/print_private.h"
 #include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -11,7 +11,6 @@
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { PAIRS = 16 }; /* two of them, four values each, fill a block */
 static const double roundings = 16;

@@ -3,7 +3,6 @@
 #include "system/system_private.h"
 #include "system/print_private.h"
 #include <gsl/gsl_errno.h>
-#include <stdio.h>
 
 _Static_assert((int)NEVH_OK == GSL_SUCCESS, "as GSL");
 _Static_assert((int)NEVH_EDOM == GSL_EDOM, "as GSL");

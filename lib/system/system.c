@@ -4,7 +4,6 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 static nevh__effect *effect_named(const nevh_system *s, const char *name) {
     size_t i = nevh__register_find(&s->effect_names, name);

@@ -69,6 +69,11 @@ void *tool_enlarge(void *memory, size_t count, size_t size) {
     return (block *)tool_owned(b) + 1;
 }
 
+void *tool_grown(void *items, size_t count, size_t size) {
+    bool full = (count & (count - 1)) == 0;
+    return full ? tool_enlarge(items, count ? 2 * count : 1, size) : items;
+}
+
 void tool_release(void *memory) {
     block *b = memory ? (block *)memory - 1 : NULL;
     if (!b)

@@ -213,6 +213,23 @@ FILE *regular_open(const char *name) {
     return NULL;
 }
 
+char *file_read(FILE *f, size_t *size) {
+    size_t room = 1 << 12, used = 0, count = 1;
+    char *text = f ? tool_allocate(room, 1) : NULL;
+    while (text && (count = fread(text + used, 1, room - used - 1, f)) > 0) {
+        used += count;
+        if (used + 1 == room)
+            text = tool_enlarge(text, room *= 2, 1);
+    }
+    if (text) {
+        text[used] = '\0';
+        fclose(f);
+    }
+    if (size)
+        *size = used;
+    return text;
+}
+
 static bool failed;
 
 bool output_failed(void) {

@@ -36,8 +36,8 @@ void table_group(table *t) {
 static void add(table *t, table_kind k, const char *text) {
     size_t i = t->cell.count;
     list_add(&t->cell, text);
-    t->kind = tool_enlarge(t->kind, i + 1, sizeof *t->kind);
-    t->group = tool_enlarge(t->group, i + 1, sizeof *t->group);
+    t->kind = tool_grown(t->kind, i, sizeof *t->kind);
+    t->group = tool_grown(t->group, i, sizeof *t->group);
     t->kind[i] = k;
     t->group[i] = t->begins;
     t->begins = false;

@@ -24,6 +24,8 @@
    asks whose a text or a row is.  Where memory is out the program ends. */
 void *tool_allocate(size_t count, size_t size);        /* zeros */
 void *tool_enlarge(void *, size_t count, size_t size); /* as realloc */
+/* An array with room for one after `count`, which doubles where it is enlarged. */
+void *tool_grown(void *, size_t count, size_t size);
 /* Frees sooner: what is made again at each step of something long.  NULL is allowed. */
 void tool_release(void *);
 void tool_release_all(void); /* for programs that run command after command */
@@ -373,6 +375,9 @@ void output_child(pid_t);
 bool file_is_regular(int file);
 /* A file to read, or NULL where it is none: a pipe or a device may have no end. */
 FILE *regular_open(const char *name);
+/* All of a file, which is closed, and a 0 after it; NULL: it is none.
+   size  out, or NULL */
+char *file_read(FILE *, size_t *size);
 void output_leave(void (*leave)(int number));
 /* Checks that it can be opened, as far as that is known without changing it. To be
    called while none is open. */

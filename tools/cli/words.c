@@ -33,7 +33,7 @@ void text_extend(char **text, const char *format, ...) {
 }
 
 static void take(list *l, char *text) {
-    l->item = tool_enlarge(l->item, l->count + 1, sizeof *l->item);
+    l->item = tool_grown(l->item, l->count, sizeof *l->item);
     l->item[l->count++] = text;
 }
 

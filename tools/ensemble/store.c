@@ -78,19 +78,7 @@ static int init(store *s) {
 /* The side file. */
 
 static char *read_side(const char *side) {
-    FILE *f = regular_open(side);
-    char *text = NULL;
-    size_t used = 0, room = 0;
-    while (f && !feof(f) && !ferror(f)) {
-        if (used + 1 >= room)
-            text = tool_enlarge(text, room = 2 * room + 4096, 1);
-        used += fread(text + used, 1, room - used - 1, f);
-    }
-    if (text)
-        text[used] = '\0';
-    if (f)
-        fclose(f);
-    return text;
+    return file_read(regular_open(side), NULL);
 }
 
 static void print_side(const store *s, const char *reasons, FILE *f) {
@@ -370,7 +358,7 @@ static int by_member(const void *a, const void *b) {
 
 /* Lines in order of members, the last one of each that is still not done. */
 static char *sorted(store *s, char *lines) {
-    size_t count = 0, room = 0;
+    size_t count = 0;
     reason *all = NULL;
     for (char *line = strtok(lines, "\n"); line; line = strtok(NULL, "\n")) {
         uint64_t member;
@@ -378,8 +366,7 @@ static char *sorted(store *s, char *lines) {
             member - s->first >= s->count ||
             store_read(s, member, NULL) == NEVH_MEMBER_DONE)
             continue;
-        if (count == room)
-            all = tool_enlarge(all, room = 2 * room + 64, sizeof *all);
+        all = tool_grown(all, count, sizeof *all);
         all[count] = (reason){member, count, line};
         count++;
     }

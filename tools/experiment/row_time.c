@@ -26,10 +26,6 @@ static stopwatch stopwatch_new(const plan *p, const row *r, size_t rounds) {
     return w;
 }
 
-static void stopwatch_free(stopwatch *w) {
-    row_stepper_keep(w->plan, w->row, false, w->stepper);
-}
-
 static int stop_after(void *data, size_t step, double t, const double q[],
                       const double p[]) {
     const size_t *steps = data;
@@ -107,6 +103,6 @@ void rows_time(const plan *p, row *const rows[], size_t count, size_t rounds,
             w[i].seconds[k] = time_once(&w[i], &spent);
     for (size_t i = 0; i < count; i++) {
         finish(&w[i], rows[i], rounds);
-        stopwatch_free(&w[i]);
+        row_stepper_keep(p, rows[i], false, w[i].stepper);
     }
 }

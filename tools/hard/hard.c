@@ -189,13 +189,8 @@ static int check_names(const options *o, size_t *cases) {
 /* Every scheme with differences of two orders and exact gradients. */
 static options with_defaults(const options *o) {
     options own = *o;
-    own.integrators = own.gradients = (list){0};
-    for (size_t i = 0; i < o->integrators.count; i++)
-        list_add(&own.integrators, o->integrators.item[i]);
     for (size_t i = 0; !o->integrators.count && nevh_integrators()[i]; i++)
         list_add(&own.integrators, nevh_integrator_name(nevh_integrators()[i]));
-    for (size_t i = 0; i < o->gradients.count; i++)
-        list_add(&own.gradients, o->gradients.item[i]);
     if (!o->gradients.count)
         list_split(&own.gradients, "central2,central6,exact");
     return own;

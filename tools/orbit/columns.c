@@ -84,7 +84,7 @@ int columns_add(quantities *c, const char *name) {
         is.kind == COLUMN_ENERGY_ERROR || is.kind == COLUMN_SHADOW_ERROR;
     if (relative && !(c->scale > 0))
         c->scale = plan_energy_scale(c->plan);
-    c->item = tool_enlarge(c->item, c->count + 1, sizeof *c->item);
+    c->item = tool_grown(c->item, c->count, sizeof *c->item);
     is.name = text_print("%s", name);
     c->item[c->count++] = is;
     return TOOL_OK;

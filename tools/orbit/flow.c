@@ -321,8 +321,7 @@ static int print(const flow_job *j, const options *o, int status) {
         note(j, o, &result.before);
         words(j, &result.after);
     }
-    status = output_page(o, &result, status);
-    return status;
+    return output_page(o, &result, status);
 }
 
 static int show(const flow_job *j, const options *o, int status) {

@@ -206,6 +206,6 @@ plot *plot_phase(run_picture *picture) {
                                       : picture_across(picture));
         picture_note(picture, to, note_text(picture, cut));
     }
-    column_panels_free(&c);
+    columns_free(&c.columns);
     return to;
 }

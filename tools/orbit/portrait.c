@@ -14,7 +14,7 @@ typedef struct {
     const char *integrator;
     double *points; /* x, y of each */
     size_t *member; /* of each */
-    size_t count, room, every, at, failed;
+    size_t count, every, at, failed;
     char *status; /* why there are none, or the first that failed; or NULL */
     bool refused, symplectic;
 } orbits_of;
@@ -33,11 +33,8 @@ static int take(void *data, size_t step, double t, const double q[],
                 const double p[]) {
     orbits_of *o = data;
     (void)step, (void)t;
-    if (o->count == o->room) {
-        o->room = 2 * o->room + 1024;
-        o->points = tool_enlarge(o->points, 2 * o->room, sizeof *o->points);
-        o->member = tool_enlarge(o->member, o->room, sizeof *o->member);
-    }
+    o->points = tool_grown(o->points, o->count, 2 * sizeof *o->points);
+    o->member = tool_grown(o->member, o->count, sizeof *o->member);
     o->points[2 * o->count] = q[0];
     o->points[2 * o->count + 1] = p[0];
     o->member[o->count++] = o->at;
@@ -407,7 +404,7 @@ static int portrait(const options *o) {
         status = plot_check(o);
     if (!status)
         status = draw(&j, o);
-    levels_free(&j.levels);
+    nevh_field_free(j.levels.field);
     plan_free(&j.plan);
     return status;
 }

@@ -33,7 +33,6 @@ typedef struct {
     bool curve, many; /* degenerate ones fill it; there may be more */
 } levels;
 int levels_new(levels *, const plan *, portrait_window);
-void levels_free(levels *);
 /* Level curves through these energies, and through the saddles; the first panel
    names what is in the legend. */
 void levels_draw(const levels *, plot *, const double energy[], size_t count);

@@ -162,7 +162,7 @@ static void add(const survey *s, const double z[2]) {
     e.energy = levels_energy(l, e.x, e.y);
     e.distance = hypot((e.x - l->plan->q[0]) / s->cell[0] / (COLUMNS - 1),
                        (e.y - l->plan->p[0]) / s->cell[1] / (ROWS - 1));
-    l->found = tool_enlarge(l->found, l->count + 1, sizeof *l->found);
+    l->found = tool_grown(l->found, l->count, sizeof *l->found);
     l->found[l->count++] = e;
 }
 

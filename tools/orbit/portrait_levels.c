@@ -40,10 +40,6 @@ int levels_new(levels *l, const plan *p, portrait_window w) {
     return TOOL_OK;
 }
 
-void levels_free(levels *l) {
-    nevh_field_free(l->field);
-}
-
 /* Curves. */
 
 /* The point at which a level crosses an edge of the grid. The first ACROSS * UP

@@ -81,22 +81,6 @@ int state_save(const char *name, const char *settings, const run_state *s,
     return status;
 }
 
-/* All of a file; NULL when it cannot be read. */
-static char *read_all(const char *name, size_t *size) {
-    size_t capacity = 1 << 12, count;
-    FILE *file = regular_open(name);
-    char *all = file ? tool_allocate(capacity, 1) : NULL;
-    *size = 0;
-    while (all && (count = fread(all + *size, 1, capacity - *size, file)) > 0) {
-        *size += count;
-        if (*size == capacity)
-            all = tool_enlarge(all, capacity *= 2, 1);
-    }
-    if (file)
-        fclose(file);
-    return all;
-}
-
 /* True if the parts fill the file; each is compared alone, since a sum of wrong
    sizes may overflow. */
 static bool adds_up(const header *h, size_t size) {
@@ -208,7 +192,7 @@ int state_load(const char *name, const char *settings, run_state *s) {
     if (stat(name, &found) == 0 &&
         !(S_ISREG(found.st_mode) && found.st_size <= most_bytes))
         return tool_refuse("%s is no state of a run", name);
-    char *all = read_all(name, &size);
+    char *all = file_read(regular_open(name), &size);
     int status;
     if (!all)
         status = tool_refuse("there is nothing to resume: %s: %s", name,

@@ -275,8 +275,7 @@ static int write_page(run_job *j, page *result) {
         return status;
     residuals_words(&j->residuals, &j->plan, &result->after);
     if (!(j->options->quiet && j->options->format == FORMAT_TABLE))
-        for (size_t i = 0; i < j->notes.count; i++)
-            list_add(&result->before, j->notes.item[i]);
+        result->before = j->notes;
     return output_page(j->options, result, status);
 }
 

@@ -35,10 +35,6 @@ int column_panels_read(column_panels *c, const plan *p, const char *text) {
     return status;
 }
 
-void column_panels_free(column_panels *c) {
-    columns_free(&c->columns);
-}
-
 /* An orbit_fill; data are column_panels. */
 static void fill_columns(void *data, double t, const double q[],
                          const double p[], double values[]) {

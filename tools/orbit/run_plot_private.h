@@ -27,7 +27,6 @@ typedef struct {
 } column_panels;
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int column_panels_read(column_panels *, const plan *, const char *text);
-void column_panels_free(column_panels *);
 
 /* Measured points, of the columns with these names, over the panel.
    x, y    columns of the data; x: NULL for time

@@ -13,7 +13,7 @@
    direction, items. */
 typedef struct {
     nevh_scene *scene;
-    size_t number, points, capacity;
+    size_t number, points;
     const nevh_scene_section *decl;
     double low, high; /* of what crosses, LEFT - RIGHT, at steps */
     double *periods;  /* of items that are coordinates; 0: none */
@@ -46,12 +46,8 @@ static double wrapped(double x, double period) {
 
 static double *new_point(series *s) {
     size_t width = 2 + s->decl->items;
-    if (s->points == s->capacity) {
-        s->capacity = s->capacity ? 2 * s->capacity : 64;
-        s->numbers =
-            tool_enlarge(s->numbers, s->capacity * width, sizeof *s->numbers);
-        s->members = tool_enlarge(s->members, s->capacity, sizeof *s->members);
-    }
+    s->numbers = tool_grown(s->numbers, s->points, width * sizeof *s->numbers);
+    s->members = tool_grown(s->members, s->points, sizeof *s->members);
     return s->numbers + width * s->points++;
 }
 
@@ -385,8 +381,7 @@ static int print(const section_job *j, const options *o, int status) {
     if (j->members.several)
         table_column(result.table, "member");
     fill(result.table, j, &items);
-    status = output_page(&as, &result, status);
-    return status;
+    return output_page(&as, &result, status);
 }
 
 /* Shows the rows and the picture. The picture is written first if a reader of the

@@ -254,6 +254,6 @@ plot *plot_time(run_picture *picture) {
         text_extend(&more, "%s%s", *more && *early ? "; " : "", early);
         picture_note(picture, to, more);
     }
-    column_panels_free(&c);
+    columns_free(&c.columns);
     return to;
 }

@@ -19,7 +19,7 @@ plot *plot_new(const char *title, const char *x, const char *y) {
 }
 
 void plot_panel(plot *p, const char *heading, const char *x, const char *y) {
-    p->panel = tool_enlarge(p->panel, p->panels + 1, sizeof *p->panel);
+    p->panel = tool_grown(p->panel, p->panels, sizeof *p->panel);
     p->panel[p->panels++] = (panel){.heading = copy(heading),
                                     .x = copy(x),
                                     .y = copy(y),
@@ -134,7 +134,7 @@ static size_t find_look(const plot *p, const char *name) {
 
 size_t plot_series(plot *p, const char *name) {
     size_t look = find_look(p, name);
-    p->series = tool_enlarge(p->series, p->count + 1, sizeof *p->series);
+    p->series = tool_grown(p->series, p->count, sizeof *p->series);
     p->series[p->count] = (series){
         .name = copy(name), .panel = p->panels - 1, .look = look, .size = 1};
     return p->count++;
@@ -198,10 +198,7 @@ void plot_member(plot *p, size_t number, size_t member, size_t members) {
 }
 
 static void add(series *s, pair point) {
-    if (s->count == s->capacity) {
-        s->capacity = 2 * s->capacity + 64;
-        s->point = tool_enlarge(s->point, s->capacity, sizeof *s->point);
-    }
+    s->point = tool_grown(s->point, s->count, sizeof *s->point);
     s->point[s->count++] = point;
 }
 

@@ -18,7 +18,7 @@ typedef struct {
     size_t panel, look, dash;
     plot_form form;
     double size; /* 1: as usual */
-    size_t count, capacity;
+    size_t count;
     pair *point;
 } series;
 

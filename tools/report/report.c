@@ -22,19 +22,9 @@ typedef struct {
 enum { STARTS = 2, ANIMATION_BYTES = 100000 };
 
 char *text_read(const char *name) {
-    FILE *f = fopen(name, "rbe");
-    size_t used = 0, room = 1 << 16, count = 1;
-    char *text = f ? tool_allocate(room, 1) : NULL;
-    while (text && (count = fread(text + used, 1, room - used - 1, f)) > 0) {
-        used += count;
-        if (used + 1 == room)
-            text = tool_enlarge(text, room *= 2, 1);
-    }
-    if (f)
-        fclose(f);
-    if (text)
-        text[used] = '\0';
-    return used ? text : NULL;
+    size_t size;
+    char *text = file_read(fopen(name, "rbe"), &size);
+    return size ? text : NULL;
 }
 
 static char *add_list(char *line, const char *option, const list *items) {

@@ -89,7 +89,7 @@ static void add_all(page *result, findings *f, bool for_people) {
         if (f->item[i].first)
             table_group(result->table);
         add_finding(result, &f->item[i], for_people);
-        finding_free(&f->item[i]);
+        nevh_field_free(f->item[i].field);
     }
 }
 
@@ -159,7 +159,7 @@ static int gradients_plan(const options *o, const plan *p) {
         if (plot_wanted(o) && !first)
             drawn = gradients_plot(o, &c);
     }
-    gradients_job_free(&c);
+    nevh_field_free(c.exact.field);
     return drawn ? TOOL_USAGE : status;
 }
 

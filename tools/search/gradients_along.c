@@ -30,10 +30,6 @@ static orbit_states states_new(const plan *p, size_t steps) {
                           .field = plan_values(p)};
 }
 
-static void states_free(orbit_states *o) {
-    nevh_field_free(o->field);
-}
-
 static const nevh_integrator *scheme_of(const gradients_job *c) {
     bool transformed;
     return plan_scheme(c->plan, c->integrator, &transformed);
@@ -224,7 +220,7 @@ static double energy_along(const gradients_job *c, const finding *g) {
         follow(c, g->gradient, g->step, &(nevh_observer){record, &o, 1});
     for (size_t i = 0; i < o.count; i++)
         most = fmax(most, fabs(o.h[i] - o.h[0]) / c->scale);
-    states_free(&o);
+    nevh_field_free(o.field);
     return status || c->plan->balance ? NAN : most;
 }
 
@@ -259,10 +255,6 @@ finding gradient_find(const gradients_job *c, const char *gradient,
     }
     g.field = f;
     return g;
-}
-
-void finding_free(finding *g) {
-    nevh_field_free(g->field);
 }
 
 /* The shortest of those that differences of full order have chosen. */
@@ -339,8 +331,4 @@ int gradients_job_make(gradients_job *c, const plan *p) {
     tool_refuse("%s: %s at dt = %g fails on this orbit: %s", p->name,
                 c->integrator, c->dt, why);
     return TOOL_FAILED;
-}
-
-void gradients_job_free(gradients_job *c) {
-    states_free(&c->exact);
 }

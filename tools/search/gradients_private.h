@@ -25,10 +25,9 @@ typedef struct {
 } gradients_job;
 
 /* Runs the orbit with the most exact gradient that there is.
-   job      out, of zeros; to be freed in any case; borrows the plan
+   job      out, of zeros; exact.field is to be freed in any case; borrows the plan
    returns  TOOL_OK; TOOL_FAILED or TOOL_USAGE with the message printed */
 int gradients_job_make(gradients_job *, const plan *);
-void gradients_job_free(gradients_job *);
 
 typedef struct {
     const char *gradient;
@@ -46,7 +45,6 @@ typedef struct {
 finding gradient_find(const gradients_job *, const char *gradient, double step);
 /* The influx of all, along one orbit. */
 void gradients_influx(const gradients_job *, finding[], size_t count);
-void finding_free(finding *);
 /* The shortest half-spread chosen by differences of full order; INFINITY. */
 double gradient_own_step(const gradients_job *, const char *gradient);
 

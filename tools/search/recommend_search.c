@@ -138,7 +138,7 @@ study *recommend_next_best(const recommendation *a, const bool taken[]) {
 }
 
 static void add_study(recommendation *a, study l) {
-    a->study = tool_enlarge(a->study, a->count + 1, sizeof *a->study);
+    a->study = tool_grown(a->study, a->count, sizeof *a->study);
     a->study[a->count++] = l;
 }
 

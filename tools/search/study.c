@@ -50,18 +50,10 @@ static void set_step(const search *s, row *r, int k) {
     }
 }
 
-/* For one level more. */
-static void reserve(study *l) {
-    if (l->count < l->capacity)
-        return;
-    l->capacity = l->capacity ? 2 * l->capacity : 16;
-    l->level = tool_enlarge(l->level, l->capacity, sizeof *l->level);
-    l->k = tool_enlarge(l->k, l->capacity, sizeof *l->k);
-}
-
 static size_t insert(study *l, size_t i, int k, row r) {
     size_t after = l->count - i;
-    reserve(l);
+    l->level = tool_grown(l->level, l->count, sizeof *l->level);
+    l->k = tool_grown(l->k, l->count, sizeof *l->k);
     memmove(l->level + i + 1, l->level + i, after * sizeof *l->level);
     memmove(l->k + i + 1, l->k + i, after * sizeof *l->k);
     l->level[i] = r, l->k[i] = k;

@@ -38,7 +38,7 @@ typedef struct {
     const nevh_integrator *scheme;
     row *level; /* coarse to fine */
     int *k;     /* their places on the grid */
-    size_t count, capacity;
+    size_t count;
     int topped; /* gap to which steps beyond the coarsest were tried; 0 */
     bool keeps; /* the energy, also at steps that are far too long */
     bool exact; /* its steps solve this H: there is no error but rounding */
