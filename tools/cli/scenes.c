@@ -73,13 +73,24 @@ static int is_scene(const struct dirent *entry) {
            strcmp(entry->d_name + length - tail, ending) == 0;
 }
 
+static int by_name(const void *a, const void *b) {
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
 void scenes_installed(list *names, list *files) {
-    struct dirent **entry = NULL;
-    int count = scandir(scenes_folder(), &entry, is_scene, alphasort);
-    if (count < 0 && errno == ENOMEM)
+    list found = {0};
+    DIR *folder = opendir(scenes_folder());
+    if (!folder && errno == ENOMEM)
         tool_owned(NULL);
-    for (int i = 0; i < count; i++) {
-        const char *file = entry[i]->d_name;
+    for (struct dirent *entry; folder && (entry = readdir(folder));)
+        if (is_scene(entry))
+            list_add(&found, entry->d_name);
+    if (folder)
+        closedir(folder);
+    if (found.count)
+        qsort(found.item, found.count, sizeof *found.item, by_name);
+    for (size_t i = 0; i < found.count; i++) {
+        const char *file = found.item[i];
         list_print(names, "%.*s", (int)(strlen(file) - sizeof ending + 1),
                    file);
         if (files)
