@@ -138,6 +138,7 @@ libnevh_core_la_SOURCES = \
 	lib/taylor/quad_orbit.c \
 	lib/taylor/dd_orbit.c \
 	lib/taylor/long_orbit.c \
+	lib/taylor/narrow.c \
 	lib/taylor/certain_private.h \
 	lib/taylor/certain_inside_private.h \
 	lib/taylor/certain.c lib/taylor/certain_end.c lib/taylor/certain_absent.c \

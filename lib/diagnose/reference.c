@@ -211,6 +211,11 @@ static int use_exact_or_series(nevh_reference *r, bool *kept) {
                : use_exact(r, kept);
 }
 
+/* True if a run goes on after the end of the solution. */
+static bool passes_end(const nevh_reference *r) {
+    return (r->horizon - r->ends) * (r->t1 > r->t0 ? 1 : -1) > 0;
+}
+
 static int use_run(nevh_reference *r) {
     bool asked = r->integrator == nevh_taylor;
     int status =
@@ -229,8 +234,10 @@ static int use_run(nevh_reference *r) {
     status = nevh__reference_run(r);
     if (!status)
         status = nevh__reference_refuse_kink(r);
-    if (status && isfinite(r->ends))
+    if (isfinite(r->ends) && (status || passes_end(r))) {
         r->report = ended, status = ended.status;
+        r->text[0] = '\0';
+    }
     size_t used = strlen(r->text);
     if (!status && dear)
         snprintf(r->text + used, sizeof r->text - used,

@@ -311,6 +311,22 @@ static void find_end(nevh_reference *r, double t) {
                    "the orbit is not known far enough to tell whether it ends");
 }
 
+/* Fails where runs have parted at an end of the solution. */
+static int refuse_passed(nevh_reference *r, const chain *c) {
+    static const double shorter = 100;
+    if (!c->parts || !nevh__narrow_is(&c->fine.narrow, shorter))
+        return NEVH_OK;
+    double ends =
+        nevh_solution_ends(r->system, r->t0, r->t1, r->start, r->start + r->n);
+    if (!isfinite(ends))
+        return NEVH_OK;
+    r->ends = ends;
+    return nevh__fail(&r->report, NEVH_EFAILED,
+                      "the solution itself ends at t = %.6g: it changes "
+                      "without bound there",
+                      ends);
+}
+
 static bool reference_series_allocate(const nevh_reference *r, chain *c) {
     c->rates = nevh__array(r->n, sizeof *c->rates);
     c->value = nevh__array(2 * r->n, sizeof *c->value);
@@ -339,6 +355,8 @@ static chain *chain_new(nevh_reference *r, double tolerance,
         status = reference_series_start(r, c);
     if (!status)
         status = reference_series_run(r, c);
+    if (!status)
+        status = refuse_passed(r, c);
     if (!status)
         return c;
     if (c->fine.ended || c->coarse.ended)

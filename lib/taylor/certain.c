@@ -88,7 +88,9 @@ static void round_start(nevh_certain *c, bool pairs) {
 
 static int start_both(nevh_certain *c, bool pairs) {
     /* Errors of some hundred series add up. */
-    double tolerance = pow(10, -c->digits - 4), finest = 2e-33;
+    static const double finest = 2e-33;
+    c->finest = c->passed;
+    double tolerance = c->finest ? finest : pow(10, -c->digits - 4);
     round_start(c, pairs);
     feclearexcept(FE_UNDERFLOW);
     int status =
@@ -290,6 +292,8 @@ static int go_both(nevh_certain *c, nevh__wide t) {
         if (!status)
             status = nevh__certain_run(c, &c->fine, next);
         c->at = (double)(next - c->t0);
+        if (!status && isinf(c->parted))
+            status = nevh__certain_passed(c);
         if (!status && have_parted(c))
             c->parted = fmin(c->parted, fabs(c->at));
         c->underflows |= fetestexcept(FE_UNDERFLOW) != 0;
@@ -361,6 +365,13 @@ void nevh_certain_stop_at(nevh_certain *c,
     c->coarse.dd.ending = c->coarse.quad.ending = ending;
 }
 
+/* True if numbers with more digits, or smaller tolerances, may tell more. */
+static bool may_do_better(const nevh_certain *c, int status) {
+    bool ended = c->ending && *c->ending;
+    bool poor = status == NEVH_EFAILED || (!status && lacks_digits(c));
+    return !ended && ((c->fine.pairs && poor) || c->passed > c->finest);
+}
+
 int nevh_certain_go_to(nevh_certain *c, double time, long double rest) {
     nevh__wide t = (nevh__wide)time + rest;
     if (!c || !certain_count(&c->fine))
@@ -372,10 +383,7 @@ int nevh_certain_go_to(nevh_certain *c, double time, long double rest) {
     int status = look_ahead(c, (double)t);
     if (!status)
         status = nevh__certain_end(c, go_both(c, t));
-    bool ended = c->ending && *c->ending;
-    bool again = c->fine.pairs && !ended &&
-                 (status == NEVH_EFAILED || (!status && lacks_digits(c)));
-    if (again) {
+    while (may_do_better(c, status)) {
         c->report = (nevh__report){0};
         status = start_both(c, false);
         status = status ? status : nevh__certain_end(c, go_both(c, t));

@@ -14,6 +14,40 @@ static nevh__wide time_of(const orbit *o) {
     return o->pairs ? o->dd.t : o->quad.t;
 }
 
+static const nevh__narrow *narrow_of(const orbit *o) {
+    return o->pairs ? &o->dd.narrow : &o->quad.narrow;
+}
+
+enum { DIGITS = 9 }; /* of the time, at most */
+
+/* off  of the time */
+static int fail_passed(nevh_certain *c, double t, double off) {
+    double span = fabs(t - (double)c->t0);
+    double digits = fmin(floor(log10(span / off)), DIGITS);
+    c->passed = true;
+    return nevh__fail(&c->report, NEVH_EFAILED,
+                      "the solution itself ends at t = %.*g, as far as digits "
+                      "tell: it changes without bound there",
+                      digits > 1 ? (int)digits : 1, t);
+}
+
+int nevh__certain_passed(nevh_certain *c) {
+    static const double series = 8;
+    const nevh__narrow *fine = narrow_of(&c->fine);
+    const nevh__narrow *coarse = narrow_of(&c->coarse);
+    double off = fmax(fabs(fine->at - coarse->at), series * coarse->shortest);
+    return nevh__narrow_unlike(fine, coarse) ? fail_passed(c, fine->at, off)
+                                             : NEVH_OK;
+}
+
+/* True if a run that goes on has passed the other's end. */
+static bool passes(const orbit *o, double end, double within) {
+    static const double shorter = 1e4;
+    const nevh__narrow *x = narrow_of(o);
+    return !has_ended(o) && nevh__narrow_is(x, shorter) &&
+           fabs(x->at - end) <= within;
+}
+
 /* Between the ends of both; INFINITY: the other goes on. */
 static double between_ends(nevh_certain *c, orbit *other, nevh__wide end,
                            double most) {
@@ -28,15 +62,18 @@ static double between_ends(nevh_certain *c, orbit *other, nevh__wide end,
    nearer to its own; others that have parted end at times that are chance. */
 int nevh__certain_end(nevh_certain *c, int status) {
     static const double most = 1e-4, shortly = 1e3;
-    enum { DIGITS = 9 };
     bool coarse = has_ended(&c->coarse);
     if (!status || !(coarse || has_ended(&c->fine)))
         return status;
     nevh__report words = c->report;
     nevh__wide end = time_of(coarse ? &c->coarse : &c->fine);
     double span = fabs((double)(end - c->t0));
-    double off = between_ends(c, coarse ? &c->fine : &c->coarse, end, most);
+    orbit *other = coarse ? &c->fine : &c->coarse;
+    double off = between_ends(c, other, end, most);
     c->report = (nevh__report){0};
+    if (passes(other, (double)end, most * span) && isinf(c->parted))
+        return fail_passed(c, (double)end,
+                           fabs(narrow_of(other)->at - (double)end));
     if (c->ending && *c->ending)
         return nevh__fail_as(&c->report, &words);
     if (!(off <= most * span) || span - c->parted > shortly * off)

@@ -24,6 +24,8 @@ struct nevh_certain {
     double at;                            /* now, since t0, as the next two */
     double parted;         /* when both were far apart; INFINITY: never */
     double renewed;        /* when the coarse run began anew */
+    bool passed;           /* an end: tolerances are then the finest */
+    bool finest;           /* they are */
     bool underflows, lost; /* something was below the doubles, and matters */
     const nevh_system *system;
     nevh_timing *timing; /* from t0 until `seen`; NULL: H reads no time */
@@ -40,6 +42,8 @@ int nevh__certain_run(nevh_certain *, nevh__certain_orbit *, nevh__wide t);
    not known.
    status   of the runs: returned where neither of them ended */
 int nevh__certain_end(nevh_certain *, int status);
+/* Fails where both runs have passed an end of the solution. */
+int nevh__certain_passed(nevh_certain *);
 #endif
 
 #endif

@@ -7,6 +7,20 @@
 #include "taylor/series_private.h"
 #include <signal.h>
 
+/* The place where the series of an orbit were shortest: their length and, of coordinates
+   and of momenta, the largest when they were longest, and up to there. */
+typedef struct {
+    double longest, shortest, at; /* at: when the shortest begins */
+    double before[2], most[2];
+    bool over; /* series are longer again */
+} nevh__narrow;
+
+/* True if series got shorter by that factor. */
+bool nevh__narrow_is(const nevh__narrow *, double shorter);
+/* True if runs of one orbit do not agree on how large it became there.  Of a pole of
+   even order, as 1/t^2, a rounding makes 1/(t^2 + 1e-30), which is passed. */
+bool nevh__narrow_unlike(const nevh__narrow *, const nevh__narrow *);
+
 /* A chain of series in numbers of one kind; the present one begins at time t.
    Functions return a status, with a message in the report. */
 enum { NEVH__ORBIT_PAST = 128 };
@@ -35,6 +49,7 @@ enum { NEVH__ORBIT_PAST = 128 };
         /* For the last series: the time for which they held, and the rate of    \
            change of the state at their beginning. */    \
         double held[NEVH__ORBIT_PAST], speed[NEVH__ORBIT_PAST];                       \
+        nevh__narrow narrow;                                                          \
         /* The sizes of coordinates and of momenta, and the parts of these by       \
            which they change in a series. */ \
         double extent[2][NEVH__ORBIT_PAST], change[2][NEVH__ORBIT_PAST];              \

@@ -185,6 +185,36 @@ static void note_past(orbit *o) {
     }
 }
 
+/* The largest of either half, now or so far. */
+static void take_largest(const orbit *o, bool now, double most[2]) {
+    most[0] = most[1] = 0;
+    for (size_t i = 0; i < 2 * o->n; i++) {
+        double x = now ? fabs((double)o->start[i]) : o->seen[i];
+        most[i >= o->n] = fmax(most[i >= o->n], x);
+    }
+}
+
+/* Keeps where series are shortest, after the longest one, but for the edges of domains
+   and breaks in time. */
+static void note_narrow(orbit *o) {
+    static const double once = 8; /* longer ones before do not count then */
+    static const double there = 2;
+    nevh__narrow *x = &o->narrow;
+    double whole = (double)o->whole;
+    if (!isfinite(whole))
+        return;
+    if (whole > x->longest && !nevh__narrow_is(x, once)) {
+        x->longest = x->shortest = whole;
+        take_largest(o, true, x->before);
+    } else if (whole < x->shortest) {
+        x->shortest = whole;
+        x->at = (double)o->t;
+    }
+    x->over = !(whole < there * x->shortest);
+    if (!x->over)
+        take_largest(o, false, x->most);
+}
+
 /* The state that a series has after a time. */
 static void place(const orbit *o, real since, real state[]) {
     size_t each = 2 * o->n;
@@ -296,6 +326,7 @@ static int begin(orbit *o, real t, const real state[], nevh__report *report) {
         limit_by_time(o);
     limit_by_convergence(o);
     note_past(o);
+    note_narrow(o);
     return NEVH_OK;
 }
 

@@ -200,6 +200,11 @@ static const struct {
     {"x = 1", "H = p_x^2/2 - x^2*cos(3*t)", 50, NAN},
     {"x = 3", "H = p_x^2/2 + exp(-10*x) + x", 20, NAN},
     {"x = 1", "H = p_x^2/2 - x^1.5", 50, NAN},
+    /* x = 1/((t - 1)^2 + 1/x(0) - 1) */
+    {"x = 1", "K = -2*(t - 1)*p_x*x^2", 3, 1},
+    {"x = 1, 0.5", "K = -2*(t - 1)*p_x*x^2", 3, 1},
+    {"x = 1", "K = -4*(t - 1)^3*p_x*x^2", 3, 1},
+    {"x = 1 - 1e-13", "K = -2*(t - 1)*p_x*x^2", 3, NAN},
 };
 
 TEST_EACH(solutions_end, sizeof ends / sizeof *ends) {
@@ -220,6 +225,11 @@ TEST(references_say_that_solutions_end) {
     r = nevh_reference_new(s.system, NULL, 0, 5, s.q, s.p);
     ck_assert(isnan(nevh_reference_ends(r)));
     ck_assert_int_eq(nevh_reference_status(r), NEVH_OK);
+    nevh_reference_free(r);
+    tear_down(&s);
+    s = set_up("x = 1", "K = -2*(t - 1)*p_x*x^2");
+    r = nevh_reference_new(s.system, NULL, 0, 3, s.q, s.p);
+    ck_assert_double_eq_tol(nevh_reference_ends(r), 1, 1e-6);
     nevh_reference_free(r);
     tear_down(&s);
 }

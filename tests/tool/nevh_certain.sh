@@ -157,6 +157,21 @@ has '^3,x,0\.141120008059867222100745,24,'
 exits 2 reference $work/start.nevh --at '(sqrt(2)^2 - 2)*1e34'
 says 'nearly equal numbers leaves too few digits'
 
+# Poles of even order in time, which a rounding turns into 1/((t - 1)^2 + 1e-26), have
+# nothing behind them, however many digits are asked for.
+for pole in '-2*(t - 1)*p_x*x^2' '-4*(t - 1)^3*p_x*x^2'; do
+    scene pole 'x = 1, 0.5' "$pole"
+    for digits in 3 10 20 24 30; do
+        exits 1 reference $work/pole.nevh --at 3 --digits $digits
+        says 'the solution itself ends at t = 1, '
+    done
+    certain pole 0.75 x 24 24 'less than there is'
+done
+# Contrast: the same, 1e-12 higher.
+scene pole 'x = 1/(1 + 2^-40), 0' '-2*(t - 1)*p_x*x^2'
+exits 0 reference $work/pole.nevh --at 3 --digits 24 --format csv --quiet
+has '^3,x,0\.2499999999999432,16,'
+
 # A force that is below all doubles where the orbit starts: x^12 from 0, in other units
 # (1e5*x)^12; and one that stays below them.
 scene twelve 'x = 0, 1e-30' 'p_x^2/2 + x^12'

@@ -94,6 +94,15 @@ grep -q 'solution itself' $work/all && fails 'ends an orbit that turns'
 scene wall 'x = 0, 1' 'H = p_x^2/2 - 1e-30/(1 - x)^2' "$run"
 tells 'the solution itself ends at t = 1' reference $work/wall.nevh --at 3
 
+# A pole of even order, which steps pass: 1/(t - 1)^2.
+scene even 'x = 1' 'K = -2*(t - 1)*p_x*x^2' \
+    '[run]\nt_end = 3\ndt = 0.01\nintegrators = gauss4'
+tells 'warning: the solution itself ends at t = 1,' run $work/even.nevh
+exits 0 compare $work/even.nevh --format csv
+has '^# no state errors: the solution itself ends at t = 1:'
+has '^[^#].*,gauss4,.*,undecided,'
+tells 'the solution itself ends at t = 1,' cost $work/even.nevh
+
 # The end of a solution is no kink of H.
 exits 0 check $work/fall.nevh
 has '^  smooth  *yes'

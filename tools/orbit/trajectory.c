@@ -33,6 +33,8 @@ struct trajectory {
     double *observed, *more;
     size_t observables;
     double energy, changed; /* of the first row; by how much others differ */
+    double first[2],
+        most[2]; /* largest coordinate and momentum: then, of all rows */
     nevh_observer observer[MOST_OBSERVERS];
     size_t observers;
     clockwork clock;
@@ -123,6 +125,23 @@ static void add_numbers(trajectory *r, const double numbers[], size_t count,
             lines_print(r->to.lines, "%c", end);
 }
 
+static void note_size(trajectory *r, const double q[], const double p[]) {
+    bool first = isnan(r->energy);
+    for (size_t k = 0; k < r->plan->n; k++) {
+        r->most[0] = fmax(r->most[0], fabs(q[k]));
+        r->most[1] = fmax(r->most[1], fabs(p[k]));
+    }
+    if (first)
+        memcpy(r->first, r->most, sizeof r->first);
+}
+
+/* True if the orbit grows so much that it may pass an end. */
+static bool has_grown(const trajectory *r) {
+    static const double much = 100;
+    return (r->first[0] > 0 && r->most[0] > much * r->first[0]) ||
+           (r->first[1] > 0 && r->most[1] > much * r->first[1]);
+}
+
 /* One row.  What is not finite is left empty. */
 static int show(trajectory *r, double t, const double q[], const double p[]) {
     double energy;
@@ -134,6 +153,7 @@ static int show(trajectory *r, double t, const double q[], const double p[]) {
         return fprintf(stderr, "%s\n", nevh_scene_message(scene)), TOOL_USAGE;
     if (nevh_field_value(nevh_stepper_field(r->stepper), 1, &t, q, p, &energy))
         energy = NAN;
+    note_size(r, q, p);
     r->energy = isnan(r->energy) ? energy : r->energy;
     r->changed = fmax(r->changed, fabs(energy - r->energy));
     add_numbers(r, &t, 1, ',');
@@ -195,7 +215,8 @@ static void doubt(trajectory *r) {
     bool suspect = !p->balance && r->changed > large * scale;
     char *why = suspect && shorter
                     ? plan_doubts_again(p, r->integrator, p->dt[0])
-                    : NULL;
+                : p->balance && has_grown(r) ? ends_text(p, plan_ends(p))
+                                             : NULL;
     if (suspect && !why && r->changed > all * scale)
         why = text_print("the energy changes by up to %.2g times its scale: "
                          "these steps are no measure of the orbit; take a "
