@@ -233,4 +233,13 @@ dt = 0.1
 integrators = verlet' >$work/edge.nevh
 exits 0 check $work/edge.nevh --format csv
 lacks 'B is 0'
+# Steps pass the end of this solution, x = 1/(t - 1)^2, after which y would be faster.
+for t_end in 3 100; do
+    printf '[coordinates]\nx = 1\ny = 1\n[effects]\nK = %s\n[run]\nt_end = %s\ndt = 0.01\n' \
+        '-2*(t - 1)*p_x*x^2 + (p_y^2 + y^2*(1 + 40*max(0, t - 2)))/2' $t_end \
+        >$work/pole.nevh
+    exits 0 check $work/pole.nevh --format csv
+    has '^# Highest frequency: omega = 1 \(t = 0\.'
+    has '^# The orbit was integrated up to t = 0\.99.*: the solution itself ends at t = 1,'
+done
 exit $status

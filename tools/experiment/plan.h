@@ -118,6 +118,8 @@ double plan_drive(const plan *, const char **effect);
 double plan_ends(const plan *);
 /* In words; NULL: it does not, or is not known to. */
 char *ends_text(const plan *, double ends);
+/* The same, or a message where it does not. */
+char *why_until(const plan *, double ends, const char *message);
 /* Refuses a plan whose solution ends before it does: TOOL_FAILED. */
 int plan_refuse_end(const plan *);
 /* Why a run failed: its message, or that the solution ends. */

@@ -128,8 +128,7 @@ char *ends_text(const plan *p, double t) {
                       t, p->unit);
 }
 
-/* A message, or that the solution ends, where that is known. */
-static char *why_until(const plan *p, double ends, const char *message) {
+char *why_until(const plan *p, double ends, const char *message) {
     if (isfinite(ends))
         return ends_text(p, ends);
     return isinf(ends)

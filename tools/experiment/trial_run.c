@@ -174,13 +174,17 @@ static int take_sample(trial *f, int i, double h, double *t) {
     return status;
 }
 
+/* Steps may pass the end of the solution, where its rates are none. */
 static void run(trial *f) {
     const plan *p = f->plan;
-    double begin = p->run->t_start, t = begin, h = (p->t_end - t) / SAMPLES;
+    double begin = p->run->t_start, t = begin, ends = plan_ends(p);
+    double h = ((isfinite(ends) ? ends : p->t_end) - begin) / SAMPLES;
     int status = nevh_stepper_status(f->stepper);
+    bool over = false;
     look(f, 0, t);
     for (int i = 1; !status && i <= SAMPLES; i++) {
-        if (i > 1 && work_of(f) >= enough)
+        over = isfinite(ends) && i == SAMPLES;
+        if (over || (i > 1 && work_of(f) >= enough))
             break;
         status = take_sample(f, i, h, &t);
         if (status)
@@ -194,8 +198,9 @@ static void run(trial *f) {
     }
     f->found->length = t - begin;
     f->ends = f->ends || status || !(f->found->length >= p->t_end - begin);
-    if (status)
-        f->found->failure = plan_why(p, nevh_stepper_message(f->stepper));
+    if (status || over)
+        f->found->failure =
+            why_until(p, ends, nevh_stepper_message(f->stepper));
 }
 
 /* The indicators of nevh chaos, of H itself; where the run is too short for them,
