@@ -117,6 +117,17 @@ typedef struct {
     char *late; /* a file as old as the compiler's last failure to end */
 } place;
 
+/* In the cache; where there is none, a file of this user's beside those of all. */
+static char *late_name(const char *cache, const char *const flags[]) {
+    const char *where = getenv("TMPDIR");
+    unsigned long long compiler = key_of("", flags).part[0];
+    if (cache)
+        return nevh__text("%s/%016llx.late", cache, compiler);
+    return nevh__text("%s/nevh-%lu-%016llx.late",
+                      where && *where ? where : "/tmp",
+                      (unsigned long)geteuid(), compiler);
+}
+
 /* cache: as of nevh__native_load */
 static place place_of(const char *source, const char *cache,
                       char why[NEVH__WHY_NATIVE]) {
@@ -125,14 +136,11 @@ static place place_of(const char *source, const char *cache,
     p.flags[LAST] = processor();
     key k = key_of(source, p.flags);
     p.cache = cache && !*cache ? NULL : nevh__cache_folder(cache, why);
-    if (p.cache) {
-        key compiler = key_of("", p.flags);
-        p.late = nevh__text("%s/%016llx.late", p.cache,
-                            (unsigned long long)compiler.part[0]);
+    p.late = late_name(p.cache, p.flags);
+    if (p.cache)
         p.kept = nevh__text("%s/%016llx%016llx.so", p.cache,
                             (unsigned long long)k.part[0],
                             (unsigned long long)k.part[1]);
-    }
     return p;
 }
 
@@ -150,7 +158,7 @@ static bool was_late(const place *p, double seconds,
     enum { APART = 600 };
     struct stat found;
     if (seconds >= NEVH__LONGEST_COMPILATION || !p->late ||
-        stat(p->late, &found))
+        lstat(p->late, &found) || found.st_uid != geteuid())
         return false;
     double age = difftime(time(NULL), found.st_mtime);
     if (age < 0 || age > APART)

@@ -180,7 +180,7 @@ fi
 # Who ends a command that compiles finds nothing of it left.
 cat >$work/compiler <<'END'
 #!/bin/sh
-touch "$SIGN"
+echo >>"$SIGN"
 while :; do
     sleep 1
 done
@@ -206,6 +206,15 @@ exits 0 compare pendulum $long --integrators gauss8,verlet --dt 0.1
 unset CC
 says 'not compiled: the C compiler took too long'
 has '^ *gauss8 '
+test "$(ls -A $TMPDIR)" = '' || fails "leaves $(ls -A $TMPDIR)"
+# Without a cache, too, it is asked once.
+rm -f $SIGN
+CC=$PWD/$work/compiler
+export CC
+exits 0 compare pendulum --t-end 20000 --integrators gauss8 --dt 0.1,0.05 --no-cache
+unset CC
+test "$(wc -l <$SIGN)" -eq 1 || fails "waits for $(wc -l <$SIGN) compilers"
+rm -f $TMPDIR/*.late
 unset SIGN
 test "$(ls -A $TMPDIR)" = '' || fails "leaves $(ls -A $TMPDIR)"
 
