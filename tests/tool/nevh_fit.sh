@@ -73,6 +73,21 @@ exits 1 fit pendulum --data $work/angle.csv --columns phi --vary phi --dt 0.05 \
     --integrators gauss8 --without gravity
 says 'the fit does not explain the data: its residuals have [0-9]+ % of their spread'
 has '^ phi '
+# Points that have nothing to do with the model: a word, which as much noise beside a
+# signal does not get.
+noise() {
+    awk -v signal="$1" 'BEGIN { print "t,x"; s = 42
+        for (i = 0; i < 40; i++) { s = s*16807 % 2147483647
+            printf "%g,%.6f\n", i/4, s/1073741824 - 1 + signal*cos(i/4) } }' >$work/noise.csv
+}
+printf '[parameters]\nk = 1.05\n[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = k*x^2/2
+[run]\nt_end = 10\ndt = 0.01\n' >$work/spring.nevh
+for signal in 0 1; do
+    noise $signal
+    exits 0 fit $work/spring.nevh --data $work/noise.csv --vary k,x,p_x
+    test "$(grep -c 'no better than their mean' $work/out)" -eq $((1 - signal)) ||
+        { fails "words on a signal of $signal"; cat $work/out; }
+done
 # Angles are compared modulo their period.
 awk -F, '/^#/ { next } /^t/ { print "t,phi"; next }
     { printf "%s,%.17g\n", $1, $2 + 6.283185307179586*(NR % 3) }' $work/angle.csv >$work/turned.csv

@@ -226,6 +226,24 @@ static void judge(const job *j, list *words) {
                            f->correlation[k * f->count + i]);
 }
 
+/* Says where the sum of squares is hardly below that about the means: as many numbers
+   would do that to noise. */
+static void judge_spread(const job *j, list *words) {
+    static const double of_noise =
+        4; /* of a number, with a frequency to find */
+    const fitting *f = &j->fit;
+    double whole = f->spread * f->spread;
+    double gained = (whole - f->chi_square) / (double)f->count;
+    if (!j->poor && f->spread > 0 && gained < of_noise * reduced(j))
+        list_print(words,
+                   "The fit explains the data no better than their mean: its "
+                   "residuals have %.0f %% of their spread about it, which "
+                   "%zu number%s may do to noise.  The data do not show the "
+                   "motion.",
+                   100 * sqrt(f->chi_square / whole), f->count,
+                   f->count == 1 ? "" : "s");
+}
+
 /* So that what is cut off is below a hundredth of the error. */
 static int digits_of(double value, double error) {
     double digits = error > 0 ? log10(fabs(value) / error) + 3 : 0;
@@ -306,6 +324,7 @@ static void add_words(job *j, const options *o, list *words) {
     bool alike = fit_residual_words(f, f->residual, words);
     fit_sparse_words(&j->fit, words);
     j->poor = fit_leaves(f, alike ? 0.5 : 1, f->chi_square);
+    judge_spread(j, words);
     add_next(j, o, words);
 }
 
