@@ -148,6 +148,13 @@ void state_show(table *t, const plan *p, const row *r) {
         table_shown(t, "%.0e", r->state_error);
 }
 
+static bool any_out_of_step(const row rows[], size_t count) {
+    bool any = false;
+    for (size_t i = 0; i < count; i++)
+        any = any || state_out_of_step(&rows[i]);
+    return any;
+}
+
 static list names_out_of_step(const row rows[], size_t count) {
     list names = {0};
     for (size_t i = 0; i < count; i++)
@@ -170,10 +177,7 @@ static const row *first_unknown(const plan *p, const row rows[], size_t count) {
 static void explain_cells(const plan *p, const row rows[], size_t count,
                           list *words) {
     const row *unknown = first_unknown(p, rows, count);
-    bool any = false;
-    for (size_t i = 0; i < count; i++)
-        any |= state_out_of_step(&rows[i]);
-    if (any)
+    if (any_out_of_step(rows, count))
         list_add(words,
                  "State error > 50 %: the computed position no longer has to "
                  "do with the true one.");
@@ -182,7 +186,43 @@ static void explain_cells(const plan *p, const row rows[], size_t count,
                    unknown->integrator, unknown->dt, unknown->state_unknown);
 }
 
+/* True if H does not change within its lengths from the start on, up to rounding. */
+static bool is_flat(const plan *p, nevh_probe *probe, nevh_field *exact) {
+    static const double rounding = 1e-13; /* of the energy */
+    double scale = plan_energy_scale(p), t = p->run->t_start;
+    double *slope = tool_allocate(2 * p->n, sizeof *slope);
+    bool flat =
+        !nevh_probe_status(probe) &&
+        !nevh_field_gradient(exact, 1, &t, p->q, p->p, slope, slope + p->n);
+    const double *lengths = flat ? nevh_probe_lengths(probe) : NULL;
+    for (size_t k = 0; flat && k < 2 * p->n; k++)
+        flat = fabs(slope[k]) * lengths[k] <= rounding * scale;
+    free(slope);
+    return flat;
+}
+
+/* True if the orbit rests where it starts, but for rounding that grows. */
+static bool starts_at_rest(const plan *p) {
+    if (!(nevh_system_traits(p->system) & NEVH_AUTONOMOUS))
+        return false;
+    nevh_options o = plan_options(p, "exact");
+    o.gradient_step = 0;
+    nevh_probe *probe = nevh_probe_new(p->system, &o);
+    nevh_field *exact = nevh_field_new(p->system, &o);
+    bool rests = is_flat(p, probe, exact);
+    nevh_probe_free(probe);
+    nevh_field_free(exact);
+    return rests;
+}
+
 void state_words(const plan *p, const row rows[], size_t count, list *words) {
+    if (any_out_of_step(rows, count) && starts_at_rest(p)) {
+        list_add(words,
+                 "The orbit starts at rest at an unstable equilibrium, up to "
+                 "rounding: what moves is rounding that grows, of which state "
+                 "errors are parts.  They say nothing of the integrators.");
+        return;
+    }
     list names = names_out_of_step(rows, count);
     char *text = list_joined(&names);
     if (names.count)
