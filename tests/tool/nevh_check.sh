@@ -24,13 +24,18 @@ has '^ verlet +2 +yes +2 +0.5$'
 printf '[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = x + 1e-12/x^12\n[run]\nt_end = 200
 dt = 0.01\nintegrators = verlet\n' >$work/wall.nevh
 exits 0 check $work/wall.nevh --format csv
-has '^# Gradient: central4 errs by [0-9.]+e-0[12] of the largest derivative'
+has '^# Gradient: central4 errs by [0-9.]+e-0[12] of the largest derivative .* shorter lengths'
 lacks '^# Gradient: the rounding'
 exits 0 check $work/wall.nevh --gradient exact --format csv
 lacks ' errs by '
 sed 's/1e-12/1/' $work/wall.nevh >$work/soft.nevh
 exits 0 check $work/soft.nevh --format csv
 lacks ' errs by '
+
+# Steps that are too short round: not a matter of lengths.
+exits 0 check pendulum --gradient-step 1e-10 --format csv
+has '^# Gradient: central4 errs by [0-9.]+e-0[5-7] of the largest derivative .* rounding of H'
+lacks 'shorter lengths'
 
 # A well that lies between all states that are tried is no quadratic form: nothing is
 # exact about it.  Contrast: the spring alone.

@@ -101,7 +101,23 @@ static void look_for_noise(trial *f, double t) {
         f->found->noise = fmax(f->found->noise, noise / f->scale);
 }
 
-/* Errors of the first gradient at the state, of truncation for the most part. */
+/* True if rounding explains how far slopes b are off a, by the energy that both would
+   change in a unit of time. */
+static bool is_rounding(trial *f, double t, const double a[],
+                        const double b[]) {
+    static const double most = 8; /* of an rms */
+    size_t n = f->plan->n;
+    double sum = 0, floor = 0;
+    for (size_t k = 0; k < n; k++) {
+        double x = a[n + k] * (a[k] - b[k]), y = a[k] * (a[n + k] - b[n + k]);
+        sum += x * x + y * y;
+    }
+    return !nevh_field_energy_floor(f->gradient, t, f->trial, f->trial + n, 1,
+                                    1, &floor) &&
+           sqrt(sum) <= most * floor;
+}
+
+/* Errors of the first gradient at the state. */
 static void look_for_errors(trial *f, double t) {
     size_t n = f->plan->n;
     double *a = f->slopes, *b = a + 2 * n;
@@ -110,13 +126,15 @@ static void look_for_errors(trial *f, double t) {
         nevh_field_gradient(f->exact, 1, &t, q, p, a, a + n) ||
         nevh_field_gradient(f->gradient, 1, &t, q, p, b, b + n))
         return;
+    double wrong = 0;
     for (size_t k = 0; k < 2 * n; k++) {
-        double wrong = fabs(a[k] - b[k]);
+        wrong = fmax(wrong, fabs(a[k] - b[k]));
         f->steepest = fmax(f->steepest, fabs(a[k]));
-        if (wrong > f->most_wrong) {
-            f->most_wrong = wrong;
-            f->found->wrong_at = t;
-        }
+    }
+    if (wrong > f->most_wrong) {
+        f->most_wrong = wrong;
+        f->found->wrong_at = t;
+        f->found->rounded = is_rounding(f, t, a, b);
     }
 }
 
@@ -358,8 +376,8 @@ static void outlook_notes(const plan *p, const trial_run *f, list *notes) {
     case NEVH_REGULAR:
         list_print(notes,
                    "Regular: over %.3g%s the distance of neighbouring orbits "
-                   "does not grow exponentially (Lyapunov exponent 0 within "
-                   "%.1g%s).",
+                   "does not grow exponentially (Lyapunov exponent below "
+                   "%.2g%s).",
                    time, p->unit, f->chaos.error + fabs(f->chaos.exponent),
                    p->per_unit);
         break;
@@ -408,9 +426,12 @@ static void gradient_notes(const plan *p, const trial_run *f, list *notes) {
     if (f->wrong > much && !f->rough)
         list_print(notes,
                    "Gradient: %s errs by %.1e of the largest derivative (t = "
-                   "%.4g%s): H varies there over shorter lengths than its "
-                   "differences are made for; --gradient exact does not err.",
-                   name, f->wrong, f->wrong_at, p->unit);
+                   "%.4g%s): %s; --gradient exact does not err.",
+                   name, f->wrong, f->wrong_at, p->unit,
+                   f->rounded ? "its steps are so short that the rounding of H "
+                                "counts"
+                              : "H varies there over shorter lengths than its "
+                                "differences are made for");
 }
 
 void trial_run_words(const plan *p, const trial_run *f, list *notes) {

@@ -62,6 +62,7 @@ typedef struct {
     double noise;             /* of the gradient: relative energy error; NAN */
     double wrong, wrong_at;   /* largest error of the gradient, relative to the
                                  largest derivative; when */
+    bool rounded;             /* as rounding of H explains */
     bool rough;  /* H is not smooth on its way; false until somebody looks */
     double edge; /* of H: distance in lengths; INFINITY: none is near */
     size_t edge_variable; /* coordinates first */

@@ -218,7 +218,7 @@ static void row_words(chaos_job *j, const row *r) {
             ? text_print("regular: nearby orbits approach e-fold every %.3g",
                          -1 / value)
         : now.verdict == NEVH_REGULAR
-            ? text_print("regular: the largest exponent is 0 within %.1g",
+            ? text_print("regular: the largest exponent is below %.2g",
                          fabs(value) + error)
             : text_print("too early to say at t = %.6g; --t-end takes it "
                          "further",
