@@ -62,13 +62,17 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/value.c \
 	lib/gradient/time.c \
 	lib/gradient/gsl_system.c \
+	lib/elementary/elementary.c \
+	lib/elementary/elementary_list.h \
+	lib/elementary/elementary_number.h \
+	lib/elementary/elementary_text.h \
+	lib/elementary/elementary_edges.h \
+	lib/elementary/elementary_lanes.h \
 	lib/expression/tape_private.h \
 	lib/expression/tape_inside_private.h \
 	lib/expression/operations_private.h \
 	lib/expression/operations.c \
 	lib/expression/tape_operations_private.h \
-	lib/expression/tape_run.h \
-	lib/expression/tape_back.h \
 	lib/expression/tape.c \
 	lib/expression/tape_build.c \
 	lib/expression/tape_rules.c \
@@ -368,7 +372,11 @@ step_texts = integrators/kernels/splitting_step.h \
 	lib/native/steps/block_driver.h \
 	lib/native/steps/long_driver.h \
 	lib/native/steps/compiled_needs.h \
-	lib/native/steps/program_needs.h
+	lib/native/steps/program_needs.h \
+	lib/elementary/elementary_number.h \
+	lib/elementary/elementary_text.h \
+	lib/elementary/elementary_edges.h \
+	lib/elementary/elementary_lanes.h
 nodist_libnevh_core_la_SOURCES = lib/native/kernel_texts.c
 lib/native/kernel_texts.c: lib/local.mk lib/native/kernel_texts.awk $(step_texts)
 	$(MKDIR_P) lib/native

@@ -23,7 +23,7 @@ ldd "$folder.new/lib/libnevh.so.0" "$folder.new/bin/nevh" |
     awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u |
     while read -r library; do
         case $(basename "$library") in
-        libc.so* | libm.so* | libmvec.so* | libdl.so* | libpthread.so* | librt.so*) ;;
+        libc.so* | libm.so* | libdl.so* | libpthread.so* | librt.so*) ;;
         ld-linux* | libnevh.so*) ;;
         *) cp -L "$library" "$folder.new/lib/" ;;
         esac

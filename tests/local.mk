@@ -20,6 +20,7 @@ suites = \
 	tests/expression/check_tape_build \
 	tests/expression/check_operations \
 	tests/expression/check_range \
+	tests/expression/check_elementary \
 	tests/expression/check_timing \
 	tests/expression/check_tape_terms \
 	tests/expression/check_formula \

@@ -1,6 +1,6 @@
 # The live page without a scene, web/kit.html: the library as WebAssembly, and
 # scripts.  make page makes it, where there is clang for that; tarballs have it.
-page_sources = web/page.h web/page.c web/describe.c web/pace.c web/crossing.c web/roots.c web/pair.c web/absent.c \
+page_sources = web/page.h web/page.c web/describe.c web/pace.c web/crossing.c web/roots.c web/pair.c web/absent.c web/math.c \
 	web/absent_code.c
 page_parts = web/page.css web/page.html web/unpack.js web/engine.js web/view.js web/page.js web/draw.js web/section.js web/try.js \
 	web/controls.js

@@ -58,7 +58,7 @@ done
 # The module's own come whole; of the library what they need.
 own=
 for source in web/page web/describe web/pace web/crossing web/roots web/pair web/absent \
-    web/absent_code tools/report/lesson; do
+    web/absent_code web/math tools/report/lesson; do
     compile $source.c || { cat "$object.log"; exit 1; }
     own="$own $object"
 done

@@ -87,7 +87,8 @@ NEVH__INLINE double _Complex nevh__pair(double a, double b) {
 /* In slope, a is the argument and f the function's value. */
 #define NEVH__ANALYTIC(name, slope)                                            \
     NEVH__INLINE double _Complex nevh__complex_##name(double _Complex z) {     \
-        double a = nevh__re(z), b = nevh__im(z), f = name(a);                  \
+        double a = nevh__re(z), b = nevh__im(z);                               \
+        double f = nevh_simd_##name(a);                                        \
         return nevh__pair(f, NEVH__TIMES(slope, b));                           \
     }
 /* Here a and c are the arguments. */
@@ -95,28 +96,30 @@ NEVH__INLINE double _Complex nevh__pair(double a, double b) {
     NEVH__INLINE double _Complex nevh__complex_##name(double _Complex y,       \
                                                       double _Complex z) {     \
         double a = nevh__re(y), b = nevh__im(y);                               \
-        double c = nevh__re(z), d = nevh__im(z), f = name(a, c);               \
+        double c = nevh__re(z), d = nevh__im(z);                               \
+        double f = nevh_simd_##name(a, c);                                     \
         return nevh__pair(f,                                                   \
                           NEVH__TIMES(slope_a, b) + NEVH__TIMES(slope_c, d));  \
     }
-NEVH__ANALYTIC(sin, cos(a))
-NEVH__ANALYTIC(cos, -sin(a))
+NEVH__ANALYTIC(sin, nevh_simd_cos(a))
+NEVH__ANALYTIC(cos, -nevh_simd_sin(a))
 NEVH__ANALYTIC(tan, 1 + f * f)
 NEVH__ANALYTIC(asin, 1 / sqrt((1 - a) * (1 + a)))
 NEVH__ANALYTIC(acos, -1 / sqrt((1 - a) * (1 + a)))
 NEVH__ANALYTIC(atan, 1 / (1 + a * a))
-NEVH__ANALYTIC(sinh, cosh(a))
-NEVH__ANALYTIC(cosh, sinh(a))
-NEVH__ANALYTIC(tanh, 1 / cosh(a) / cosh(a)) /* 1 - f^2 would cancel */
+NEVH__ANALYTIC(sinh, nevh_simd_cosh(a))
+NEVH__ANALYTIC(cosh, nevh_simd_sinh(a))
+NEVH__ANALYTIC(tanh, 1 / nevh_simd_cosh(a) /
+                         nevh_simd_cosh(a)) /* 1 - f^2 would cancel */
 NEVH__ANALYTIC(exp, f)
 NEVH__ANALYTIC(log, 1 / a)
 NEVH__ANALYTIC(sqrt, 0.5 / f)
 NEVH__ANALYTIC(cbrt, 1 / (3 * f * f))
-NEVH__ANALYTIC2(atan2, c / hypot(a, c) / hypot(a, c),
-                -a / hypot(a, c) / hypot(a, c))
+NEVH__ANALYTIC2(atan2, c / nevh_simd_hypot(a, c) / nevh_simd_hypot(a, c),
+                -a / nevh_simd_hypot(a, c) / nevh_simd_hypot(a, c))
 NEVH__ANALYTIC2(hypot, a / f, c / f)
-NEVH__ANALYTIC2(pow, c == 0 ? 0 : c * pow(a, c - 1),
-                a == 0 && c > 0 ? 0 : f * log(a))
+NEVH__ANALYTIC2(pow, c == 0 ? 0 : c * nevh_simd_pow(a, c - 1),
+                a == 0 && c > 0 ? 0 : f * nevh_simd_log(a))
 #undef NEVH__ANALYTIC2
 #undef NEVH__ANALYTIC
 #undef NEVH__TIMES
@@ -188,10 +191,7 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
                   const double (*)[2]: nevh__of_complex)((x), (size_t)(k))
 #define NEVH__ANY(x, real, complex)                                            \
     _Generic((x), double _Complex: complex, default: real)
-#define NEVH__LIBM(f, x)                                                       \
-    NEVH__ANY(x, _Generic(nevh__body_q, nevh__lanes: nevh_simd_##f,                 \
-                                   nevh__one: nevh_point_##f, default: f),     \
-              nevh__complex_##f)
+#define NEVH__FUNCTION(f, x) NEVH__ANY(x, nevh_simd_##f, nevh__complex_##f)
 // clang-format on
 #define NEVH__OWN(f, x) NEVH__ANY(x, nevh__real_##f, nevh__complex_##f)
 
@@ -199,22 +199,22 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
 #define nevh_q(k)        NEVH__AT(nevh__body_q, k)
 #define nevh_p(k)        NEVH__AT(nevh__body_p, k)
 #define nevh_c(k)        NEVH__AT(nevh__body_c, k)
-#define nevh_sin(x)      NEVH__LIBM(sin, x)((x) + nevh__none)
-#define nevh_cos(x)      NEVH__LIBM(cos, x)((x) + nevh__none)
-#define nevh_tan(x)      NEVH__LIBM(tan, x)((x) + nevh__none)
-#define nevh_asin(x)     NEVH__LIBM(asin, x)((x) + nevh__none)
-#define nevh_acos(x)     NEVH__LIBM(acos, x)((x) + nevh__none)
-#define nevh_atan(x)     NEVH__LIBM(atan, x)((x) + nevh__none)
-#define nevh_atan2(y, x) NEVH__LIBM(atan2, (y) + (x))((y) + nevh__none, x)
-#define nevh_sinh(x)     NEVH__LIBM(sinh, x)((x) + nevh__none)
-#define nevh_cosh(x)     NEVH__LIBM(cosh, x)((x) + nevh__none)
-#define nevh_tanh(x)     NEVH__LIBM(tanh, x)((x) + nevh__none)
-#define nevh_exp(x)      NEVH__LIBM(exp, x)((x) + nevh__none)
-#define nevh_log(x)      NEVH__LIBM(log, x)((x) + nevh__none)
-#define nevh_sqrt(x)     NEVH__LIBM(sqrt, x)(x)
-#define nevh_cbrt(x)     NEVH__LIBM(cbrt, x)((x) + nevh__none)
-#define nevh_pow(x, y)   NEVH__LIBM(pow, (x) + (y))((x) + nevh__none, y)
-#define nevh_hypot(x, y) NEVH__LIBM(hypot, (x) + (y))((x) + nevh__none, y)
+#define nevh_sin(x)      NEVH__FUNCTION(sin, x)(x)
+#define nevh_cos(x)      NEVH__FUNCTION(cos, x)(x)
+#define nevh_tan(x)      NEVH__FUNCTION(tan, x)(x)
+#define nevh_asin(x)     NEVH__FUNCTION(asin, x)(x)
+#define nevh_acos(x)     NEVH__FUNCTION(acos, x)(x)
+#define nevh_atan(x)     NEVH__FUNCTION(atan, x)(x)
+#define nevh_atan2(y, x) NEVH__FUNCTION(atan2, (y) + (x))(y, x)
+#define nevh_sinh(x)     NEVH__FUNCTION(sinh, x)(x)
+#define nevh_cosh(x)     NEVH__FUNCTION(cosh, x)(x)
+#define nevh_tanh(x)     NEVH__FUNCTION(tanh, x)(x)
+#define nevh_exp(x)      NEVH__FUNCTION(exp, x)(x)
+#define nevh_log(x)      NEVH__FUNCTION(log, x)(x)
+#define nevh_sqrt(x)     NEVH__FUNCTION(sqrt, x)(x)
+#define nevh_cbrt(x)     NEVH__FUNCTION(cbrt, x)(x)
+#define nevh_pow(x, y)   NEVH__FUNCTION(pow, (x) + (y))(x, y)
+#define nevh_hypot(x, y) NEVH__FUNCTION(hypot, (x) + (y))(x, y)
 #define nevh_abs(x)      NEVH__ANY(x, fabs, nevh__complex_abs)(x)
 #define nevh_min(x, y)   NEVH__OWN(min, (x) + (y))(x, y)
 #define nevh_max(x, y)   NEVH__OWN(max, (x) + (y))(x, y)
@@ -227,12 +227,10 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
 #define NEVH__COMPLEX
 #endif
 
-/* One form of a body: its numbers, what is added to arguments, which is -0.,
-   and the body. */
-#define NEVH__FORM(number, nothing, params_type, ...)                          \
+/* One form of a body: its numbers, and the body. */
+#define NEVH__FORM(number, params_type, ...)                                   \
     {                                                                          \
         NEVH__MAYBE_UNUSED typedef number nevh_num;                            \
-        NEVH__MAYBE_UNUSED const double nevh__none = nothing;                  \
         const params_type *params = nevh__params;                              \
         (void)nevh_t, (void)nevh__body_q, (void)nevh__body_p,                  \
             (void)nevh__body_c;                                                \
@@ -248,12 +246,12 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
     NEVH__MAYBE_UNUSED static double name##_value(                             \
         double nevh_t, const double *nevh__body_q, const double *nevh__body_p,           \
         const double *nevh__body_c, const void *nevh__params)                       \
-    NEVH__FORM(double, -0., params_type, __VA_ARGS__)                          \
+    NEVH__FORM(double, params_type, __VA_ARGS__)                               \
                                                                                \
     NEVH__INLINE double name##_lane(                                           \
         double nevh_t, nevh__lanes nevh__body_q, nevh__lanes nevh__body_p,               \
         nevh__lanes nevh__body_c, const void *nevh__params)                         \
-    NEVH__FORM(double, -0., params_type, __VA_ARGS__)                          \
+    NEVH__FORM(double, params_type, __VA_ARGS__)                               \
                                                                                \
     NEVH__MAYBE_UNUSED NEVH_SIMD static void name##_block(                     \
         size_t width, const double *t, const double *q, const double *p,       \
@@ -270,7 +268,7 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
         double nevh_t, const double (*nevh__body_q)[2],                             \
         const double (*nevh__body_p)[2], const double *nevh__body_c,                     \
         const void *nevh__params)                                              \
-    NEVH__FORM(double _Complex, -0., params_type, __VA_ARGS__)                 \
+    NEVH__FORM(double _Complex, params_type, __VA_ARGS__)                      \
                                                                                \
     NEVH__MAYBE_UNUSED NEVH__COMPLEX static void name##_complex(               \
         double t, const double (*q)[2], const double (*p)[2],                  \
@@ -308,11 +306,11 @@ NEVH__INLINE double *nevh__slope(nevh__slopes d, size_t k) {
 #define NEVH__GRADIENT_FORM(name, rows, params_type, ...)                      \
     NEVH__INLINE void name(double nevh_t, rows nevh__body_q, rows nevh__body_p,          \
                            rows nevh__body_c, const void *nevh__params,             \
-                           double nothing, nevh__slopes nevh__body_dh_dq,           \
+                           nevh__slopes nevh__body_dh_dq,                           \
                            nevh__slopes nevh__body_dh_dp)                           \
     {                                                                          \
         (void)nevh__body_dh_dq, (void)nevh__body_dh_dp;                                  \
-        NEVH__FORM(double, nothing, params_type, __VA_ARGS__)                  \
+        NEVH__FORM(double, params_type, __VA_ARGS__)                           \
     }
 
 /* All lanes, for the halves that are wanted: constants. */
@@ -321,13 +319,13 @@ NEVH__INLINE double *nevh__slope(nevh__slopes d, size_t k) {
         double nowhere;                                                        \
         name##_gradient_lane(                                                  \
             t[i], (nevh__lanes){q, width, i}, (nevh__lanes){p, width, i},      \
-            (nevh__lanes){c, width, i}, params, NEVH__UNLIKE(i),               \
+            (nevh__lanes){c, width, i}, params,                                \
             (nevh__slopes){dh_dq, width, i, q_too, &nowhere},                  \
             (nevh__slopes){dh_dp, width, i, p_too, &nowhere});                 \
     }
 #define NEVH__GRADIENT_POINT(name, q_too, p_too)                               \
     name##_gradient_one(t, (nevh__one){q}, (nevh__one){p}, (nevh__one){c},     \
-                        params, -0.,                                           \
+                        params,                                                \
                         (nevh__slopes){dh_dq, 1, 0, q_too, &nowhere},          \
                         (nevh__slopes){dh_dp, 1, 0, p_too, &nowhere})
 
@@ -344,7 +342,6 @@ NEVH__INLINE double *nevh__slope(nevh__slopes d, size_t k) {
         size_t width, const double *t, const double *q, const double *p,       \
         const double *c, const void *params, double *dh_dq, double *dh_dp)     \
     {                                                                          \
-        NEVH__MAYBE_UNUSED const double *nothing = nevh__unlike();             \
         if (dh_dq && dh_dp)                                                    \
             NEVH__GRADIENT_LANES(name, true, true)                             \
         else if (dh_dq)                                                        \

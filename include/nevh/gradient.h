@@ -56,9 +56,10 @@ typedef struct {
     const nevh_system *transform; /* of time: s(q, p) > 0 as a system, borrowed;
                                      NULL: none; see <nevh/transform.h> */
     double binding;               /* omega of Tao's schemes, 1/t; 0: chosen */
-    bool portable; /* terms with a scalar value are evaluated through it,
-                      never in SIMD blocks: the same digits on machines
-                      with the same libm and instruction-set class */
+    bool portable; /* terms with a scalar value are evaluated through it, never
+                      in SIMD blocks: values that call functions other than
+                      those of <nevh/simd.h> have one result for both.  Formulas
+                      give the same digits without */
     bool balance;  /* steppers keep account of the energy that comes in from
                       outside: see nevh_stepper_gain */
     nevh_native_use native;   /* of steppers; see nevh_stepper_native */

@@ -99,8 +99,7 @@ NEVH_API double nevh_stepper_gain(const nevh_stepper *, size_t lane);
    nevh_options.t, q and p, and prints t, q and p; or, called with the word
    "energy", errors of the energy as nevh compare has them.  Implicit steps are
    iterated as here, but where Newton's iteration would have to help, the program
-   says so and ends.  It gives the digits of a stepper that is portable, on a
-   machine with the same libm.
+   says so and ends.  It gives the digits of a stepper.
    names      of the coordinates, n
    h, t_end   as of nevh_run_until
    every      steps between rows, at least 1

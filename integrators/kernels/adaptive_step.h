@@ -19,8 +19,7 @@
    the way to a pericentre this saves most rejections.  Where H is not finite at
    a trial's stages, the trial is rejected as well.
 
-   The text needs vector_private.h, pace.h and functions of libm, which no
-   compiler may take of constants: their last bits would be its own.
+   The text needs vector_private.h, pace.h and elementary functions.
    lib/native hands it to the C compiler.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef NEVH_ADAPTIVE_STEP_H
@@ -28,6 +27,7 @@
 
 #include "system/vector_private.h"
 #include "work/pace.h"
+#include <nevh/simd.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -111,13 +111,13 @@ NEVH__INLINE bool nevh__substeps_too_short(const nevh__substeps *l, double h) {
    err_last is the least that is remembered, 1e-4; its logarithm is written out. */
 NEVH__INLINE double nevh__substeps_factor(const nevh__adaptive_rule *x,
                                           const nevh__substeps *l, double err) {
-    double k = x->power, beta = 0.2 / k, now = log2(err);
-    double last = l->last > 0 ? log2(l->last) : -0x1.a934f0979a371p+3;
+    double k = x->power, beta = 0.2 / k, now = nevh_simd_log(err);
+    double last = l->last > 0 ? nevh_simd_log(l->last) : -0x1.26bb1bbb55516p+3;
     double usual = (0.75 * beta - 1 / k) * now + beta * last;
     if (!(l->last > 0))
-        return 0.9 * exp2(usual);
-    double growing = log2(l->step / l->before) + (last - 2 * now) / k;
-    return 0.9 * exp2(fmin(usual, growing));
+        return 0.9 * nevh_simd_exp(usual);
+    double growing = nevh_simd_log(l->step / l->before) + (last - 2 * now) / k;
+    return 0.9 * nevh_simd_exp(fmin(usual, growing));
 }
 
 /* Near the end of an orbit the times themselves may be too coarse for a shorter
@@ -125,7 +125,7 @@ NEVH__INLINE double nevh__substeps_factor(const nevh__adaptive_rule *x,
 NEVH__INLINE bool nevh__substeps_reject(const nevh__adaptive_rule *x,
                                         nevh__substeps *l, double h,
                                         double err) {
-    double wanted = 0.9 * pow(err, -1. / x->power);
+    double wanted = 0.9 * nevh_simd_pow(err, -1. / x->power);
     l->size = l->step * (wanted > 0.2 ? fmin(wanted, 0.9) : 0.2);
     l->held = true;
     bool shorter = l->done + l->size < l->done + l->step;

@@ -55,8 +55,8 @@ NEVH__INLINE double nevh__leap_size(const nevh__leap *x) {
     double size = 0;
     NEVH__KNOWN_COUNT
     for (size_t k = 0; k < x->n; k++) {
-        size = hypot(size, x->speed[k] / x->unit_q);
-        size = hypot(size, x->force[k] / x->unit_p);
+        size = nevh_simd_hypot(size, x->speed[k] / x->unit_q);
+        size = nevh_simd_hypot(size, x->force[k] / x->unit_p);
     }
     return size;
 }
@@ -108,8 +108,8 @@ NEVH__INLINE int nevh__leap_change(const nevh__leap *x, double t, double unit,
 /* s over its value at the start, for |f|. */
 NEVH__INLINE double nevh__leap_stretch(const nevh__leap *x, double unit) {
     double size = nevh__leap_size(x), least = unit / NEVH__LEAP_STRETCH;
-    double ratio = hypot(unit, least) / hypot(size, least);
-    return ratio > 0 ? pow(ratio, NEVH__LEAP_POWER) : 1;
+    double ratio = nevh_simd_hypot(unit, least) / nevh_simd_hypot(size, least);
+    return ratio > 0 ? nevh_simd_pow(ratio, NEVH__LEAP_POWER) : 1;
 }
 
 /* The same of the density, which moves on by half of h. */

@@ -63,7 +63,7 @@ static nevh__adaptive_rule rule_of(const nevh_work *w,
                                  .coarse = family->coarse,
                                  .keeps = family->last_is_first,
                                  .tolerance = tolerance,
-                                 .part = 0.5 * pow(tolerance, 1. / k),
+                                 .part = 0.5 * nevh_simd_pow(tolerance, 1. / k),
                                  .scale = w->scale};
 }
 

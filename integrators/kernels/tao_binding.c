@@ -126,7 +126,8 @@ static void add_curved(survey *s, size_t at, uint64_t *random) {
 /* Rounded to an eighth of an octave: at which states the run is looked at rests
    on the last digits of its gradients, and the binding should not. */
 static double steady(double x) {
-    return exp2(round(log2(x) * 8) / 8);
+    static const double eighths = 11.541560327111707; /* 8/log(2) */
+    return nevh_simd_pow(2, round(nevh_simd_log(x) * eighths) / 8);
 }
 
 /* Variations of H by its curvature in q_k and in p_k, within their lengths, and

@@ -55,17 +55,16 @@ NEVH__INLINE double nevh__tao_part(size_t count, const double weights[],
 }
 
 /* The lengths of parts, and cosines and sines of 2 omega times these: 3 parts
-   numbers.  The angle is volatile, so that no compiler evaluates them with last
-   bits of its own. */
+   numbers. */
 NEVH__INLINE void nevh__tao_prepare(size_t count, const double weights[],
                                     double omega, double h, double lengths[]) {
     size_t parts = 2 * count + 1;
     for (size_t i = 0; i < parts; i++) {
         double part = nevh__tao_part(count, weights, i, h);
-        const volatile double angle = 2 * omega * part;
+        double angle = 2 * omega * part;
         lengths[i] = part;
-        lengths[parts + i] = cos(angle);
-        lengths[2 * parts + i] = sin(angle);
+        lengths[parts + i] = nevh_simd_cos(angle);
+        lengths[2 * parts + i] = nevh_simd_sin(angle);
     }
 }
 

@@ -54,16 +54,19 @@ static double size_of(const nevh_work *w, const double rows[], size_t k,
 static double reach_of(const nevh_work *w, const double rows[]) {
     const taylor_plan *plan = w->plan;
     int exponent = 0;
-    double tolerance = log2(w->options->tolerance), reach = INFINITY;
+    const double per_two = 1.4426950408889634; /* log2(e) */
+    double tolerance = per_two * nevh_simd_log(w->options->tolerance);
+    double reach = INFINITY;
     double rate = size_of(w, rows, 1, 0);
     if (rate > 0)
         frexp(rate, &exponent);
     for (size_t k = plan->order; k >= plan->order / 2; k--) {
-        double size = log2(size_of(w, rows, k, -(int)k * exponent));
+        double size =
+            per_two * nevh_simd_log(size_of(w, rows, k, -(int)k * exponent));
         reach =
             fmin(reach, nevh__series_reach(plan->order, tolerance, k, size));
     }
-    return ldexp(exp2(reach), -exponent);
+    return ldexp(nevh_simd_exp(reach / per_two), -exponent);
 }
 
 /* The state at a time since the beginning, in 2n; as its change, which is then

@@ -3,6 +3,7 @@
 #include "diagnose/chaos_private.h"
 #include "run/stepper_private.h"
 #include <fenv.h>
+#include <nevh/simd.h>
 #include <math.h>
 #include <nevh/diagnose.h>
 #include <stdio.h>
@@ -128,7 +129,7 @@ static void judge_damped(const nevh_chaos_report *run, double value,
                          double error, nevh_chaos_confirmation *to) {
     const nevh_chaos_finding *f = &to->found;
     chaos_confirm_judge(run, value, error, to);
-    to->error = hypot(error, value - f->exponent);
+    to->error = nevh_simd_hypot(error, value - f->exponent);
     if (f->report.verdict != run->verdict)
         to->verdict = NEVH_UNRESOLVED;
 }

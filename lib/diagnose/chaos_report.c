@@ -1,6 +1,7 @@
 /* nevh: exponents with their errors, and the word on an orbit.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/chaos_private.h"
+#include <nevh/simd.h>
 #include <math.h>
 
 /* Parts of the run: while displacements align; and while a damped motion, of which
@@ -147,7 +148,8 @@ static nevh_chaos_verdict verdict_on(const nevh_chaos *c, size_t start) {
     if (!(t > 0))
         return NEVH_EARLY;
     estimate e = estimate_start(c, start, 0);
-    double least = resolution(c, start), error = hypot(e.error, least);
+    double least = resolution(c, start),
+           error = nevh_simd_hypot(e.error, least);
     double megno = nevh__chaos_megno(c, start);
     if (e.rate > significant * error && megno > 4 &&
         c->start[start].sali < nevh__chaos_aligned(c)) {
@@ -190,7 +192,7 @@ double nevh_chaos_exponent(const nevh_chaos *c, size_t i, double *error) {
     double change = (growth[1] / time[1] - growth[0] / time[0]) / 2;
     double largest = fmax(fmax(between, within), change * change);
     if (error)
-        *error = hypot(sqrt(largest), resolution(c, 0));
+        *error = nevh_simd_hypot(sqrt(largest), resolution(c, 0));
     return mean;
 }
 

@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/stepper_private.h"
 #include "system/print_private.h"
+#include <nevh/simd.h>
 #include <math.h>
 #include <nevh/confirm.h>
 #include <nevh/diagnose.h>
@@ -284,6 +285,6 @@ int nevh_finer_run(nevh_finer *f, double t_end, double q[], double p[],
 
 bool nevh_agree(double a, double a_error, double b, double b_error) {
     static const double errors = 3;
-    double error = hypot(a_error, b_error);
+    double error = nevh_simd_hypot(a_error, b_error);
     return isfinite(error) && fabs(a - b) <= errors * error;
 }

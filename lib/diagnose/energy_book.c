@@ -4,6 +4,7 @@
    between those that the step begins and ends at.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/energy_book_private.h"
+#include <nevh/simd.h>
 #include <math.h>
 
 typedef struct {
@@ -20,7 +21,7 @@ static bool value_at(nevh__book *b, const step *s, double of, double t,
         double to = k < b->n ? s->q[k] : s->p[k - b->n];
         b->state[k] = s->from[k] + (to - s->from[k]) * part;
         if (damping != 0 && k >= b->n)
-            b->state[k] *= exp(-damping * rate[k - b->n]);
+            b->state[k] *= nevh_simd_exp(-damping * rate[k - b->n]);
     }
     return !nevh_field_value(b->field, 1, &t, b->state, b->state + b->n, h);
 }

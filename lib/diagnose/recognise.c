@@ -9,6 +9,7 @@
 #include "diagnose/exact_private.h"
 #include "taylor/orbit_private.h"
 #include <float.h>
+#include <nevh/simd.h>
 #include <math.h>
 #include <nevh/gradient.h>
 #include <stdlib.h>
@@ -202,7 +203,7 @@ static bool oscillator_fits(const trial *b, nevh__exact_solution *e,
 
 static region oscillator_region(const trial *b, const nevh__exact_solution *e) {
     double ratio = sqrt((double)(e->a / e->b)), c = (double)e->c;
-    double most = margin * hypot(b->q0[0] - c, b->p0[0] * ratio);
+    double most = margin * nevh_simd_hypot(b->q0[0] - c, b->p0[0] * ratio);
     if (most == 0) /* at rest */
         most = fmax(fabs(c), DBL_MIN / DBL_EPSILON);
     return (region){c, most, c - most, c + most, most / ratio};

@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "system/system_private.h"
 #include <gsl/gsl_fft_real.h>
+#include <nevh/simd.h>
 #include <math.h>
 #include <nevh/frequencies.h>
 #include <stdlib.h>
@@ -67,7 +68,7 @@ static bool are_dense(nevh_spectral_samples *s) {
     double slow = 0, fast = 0;
     samples_transform(s);
     for (size_t j = 1; j < s->size / 2; j++) {
-        double size = hypot(s->power[j], s->power[s->size - j]);
+        double size = nevh_simd_hypot(s->power[j], s->power[s->size - j]);
         double *most = j < s->size / 4 ? &slow : &fast;
         *most = fmax(*most, size);
     }

@@ -7,6 +7,7 @@
 #include "diagnose/spectrum_private.h"
 #include "system/system_private.h"
 #include <gsl/gsl_fft_real.h>
+#include <nevh/simd.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -253,7 +254,7 @@ static bool spectrum_fit(nevh__spectrum *a, double moves[]) {
 }
 
 double nevh__spectrum_amplitude(const nevh__spectrum *a, size_t i) {
-    return hypot(a->cosine[i], a->sine[i]);
+    return nevh_simd_hypot(a->cosine[i], a->sine[i]);
 }
 
 /* All lines together, as their peaks overlap: Newton's method, as long as moves

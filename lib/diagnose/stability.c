@@ -6,6 +6,7 @@
    Found. Comput. Math. 8 (2008) 357-393].
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "system/system_private.h"
+#include <nevh/simd.h>
 #include <math.h>
 #include <nevh/diagnose.h>
 #include <nevh/extend.h>
@@ -188,7 +189,8 @@ static double stability_longest(const oscillator *o, double x) {
     for (int i = 0; i < STEPS && most < 100; i++) {
         if (nevh_stepper_apply(o->stepper, i * x, x, q, p))
             return INFINITY;
-        most = fmax(most, fmax(hypot(q[0], p[0]), hypot(q[1], p[1])));
+        most = fmax(most, fmax(nevh_simd_hypot(q[0], p[0]),
+                               nevh_simd_hypot(q[1], p[1])));
     }
     return most;
 }

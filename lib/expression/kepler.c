@@ -19,7 +19,7 @@ static const double farthest = 1e15; /* beyond it M is noise */
 static double less_sine(double x) {
     double sum = 0;
     if (x > 2)
-        return x - sin(x);
+        return x - nevh_simd_sin(x);
     for (int k = TERMS; k > 0; k--)
         sum = x * x / (double)(2 * k * (2 * k + 1)) * (1 - sum);
     return x * sum;
@@ -27,14 +27,14 @@ static double less_sine(double x) {
 
 /* 1 - e cos E */
 static double radius(double anomaly, double e) {
-    double s = sin(anomaly / 2);
+    double s = nevh_simd_sin(anomaly / 2);
     return (1 - e) + 2 * e * s * s;
 }
 
 static double kepler_solve(double mean, double e) {
     double x = fmin(fmin(mean + e, pi), mean / (1 - e));
     if (e > 0)
-        x = fmin(x, cbrt(pi * pi * mean / e));
+        x = fmin(x, nevh_simd_cbrt(pi * pi * mean / e));
     for (int i = 0; i < MOST_STEPS; i++) {
         double over = (1 - e) * x + e * less_sine(x) - mean;
         double next = x - over / radius(x, e);

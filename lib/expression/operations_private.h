@@ -9,9 +9,9 @@
             without
    name     in formulas
    value    the value y of arguments a and b.  Functions are called by
-            NEVH__F(f) where libmvec has them, by NEVH__L(f) where only libm has,
-            and by NEVH__H(f) where nevh has, for each kind of numbers; includers
-            define these
+            NEVH__F(f) where they are elementary, by NEVH__L(f) where libm has
+            them, and by NEVH__H(f) where nevh has, for each kind of numbers;
+            includers define these
    by_a     g times the derivatives by the arguments, of doubles
    ...      initializers of a nevh__operation_traits: the same as formulas, and what
             else differs from 0
@@ -59,7 +59,7 @@
       .at_edge = "asin(...), whose argument reaches 1 or -1,")                 \
     X(FUNCTION, ACOS, "acos", 1, NEVH__F(acos)(a),                             \
       NEVH__G(-1 / NEVH__F(sqrt)((1 - a) * (1 + a))), 0,                       \
-      .by_a = {"1 neg", "1 a a * - sqrt"}, .edge = "1 a a * -",                   \
+      .by_a = {"1 neg", "1 a a * - sqrt"}, .edge = "1 a a * -",                \
       .at_edge = "acos(...), whose argument reaches 1 or -1,")                 \
     X(FUNCTION, ATAN, "atan", 1, NEVH__F(atan)(a), NEVH__G(1 / (1 + a * a)), 0,\
       .by_a = {"1", "1 a a * +"})                                              \
@@ -67,7 +67,7 @@
       NEVH__G(b / NEVH__F(hypot)(a, b) / NEVH__F(hypot)(a, b)),                \
       NEVH__G(-a / NEVH__F(hypot)(a, b) / NEVH__F(hypot)(a, b)),               \
       .by_a = {"b", "a a * b b * +"}, .by_b = {"a neg", "a a * b b * +"},      \
-      .lanewise = true, .usage = "(y, x)",                                     \
+      .usage = "(y, x)",                                                       \
       .jumps = true,                                                           \
       .at_edge = "atan2(...), which jumps where its direction is that of the " \
                  "negative axis,")                                             \
@@ -78,25 +78,25 @@
     X(FUNCTION, TANH, "tanh", 1, NEVH__F(tanh)(a),                             \
       NEVH__G(1 / NEVH__F(cosh)(a) / NEVH__F(cosh)(a)), 0,                     \
       .by_a = {"1 y y * -"}, .steep = true)                                    \
-    X(FUNCTION, ASINH, "asinh", 1, NEVH__L(asinh)(a),                          \
+    X(FUNCTION, ASINH, "asinh", 1, NEVH__F(asinh)(a),                          \
       NEVH__G(1 / NEVH__F(hypot)(1, a)), 0,                                    \
       .by_a = {"1", "1 a a * + sqrt"}, .lanewise = true)                       \
-    X(FUNCTION, ACOSH, "acosh", 1, NEVH__L(acosh)(a),                          \
+    X(FUNCTION, ACOSH, "acosh", 1, NEVH__F(acosh)(a),                          \
       NEVH__G(1 / NEVH__F(sqrt)(a - 1) / NEVH__F(sqrt)(a + 1)), 0,             \
-      .by_a = {"a 1 - -0.5 ^ 1 a + -0.5 ^ *"}, .lanewise = true,               \
+      .by_a = {"a 1 - -0.5 ^ 1 a + -0.5 ^ *"},                                 \
       .edge = "a 1 -", .at_edge = "acosh(...), whose argument reaches 1,")     \
-    X(FUNCTION, ATANH, "atanh", 1, NEVH__L(atanh)(a),                          \
+    X(FUNCTION, ATANH, "atanh", 1, NEVH__F(atanh)(a),                          \
       NEVH__G(1 / ((1 - a) * (1 + a))), 0,                                     \
-      .by_a = {"1", "1 a a * -"}, .lanewise = true, .edge = "1 a a * -",       \
+      .by_a = {"1", "1 a a * -"}, .edge = "1 a a * -",                         \
       .at_edge = "atanh(...), whose argument reaches 1 or -1,")                \
     X(FUNCTION, EXP, "exp", 1, NEVH__F(exp)(a), NEVH__G(y), 0,                 \
       .by_a = {"y"}, .steep = true)                                            \
     X(FUNCTION, LOG, "log", 1, NEVH__F(log)(a), NEVH__G(1 / a), 0,             \
       .by_a = {"1", "a"}, .edge = "a",                                         \
       .at_edge = "log(...), whose argument reaches 0,")                        \
-    X(FUNCTION, LOG10, "log10", 1, NEVH__L(log10)(a),                          \
+    X(FUNCTION, LOG10, "log10", 1, NEVH__F(log10)(a),                          \
       NEVH__G(1 / (a * NEVH__LN10)), 0,                                        \
-      .by_a = {"1", "a 10 log *"}, .lanewise = true, .edge = "a",              \
+      .by_a = {"1", "a 10 log *"}, .edge = "a",                                \
       .at_edge = "log10(...), whose argument reaches 0,")                      \
     X(FUNCTION, SQRT, "sqrt", 1, NEVH__F(sqrt)(a), NEVH__G(0.5 * (1 / y)), 0,  \
       .by_a = {"0.5", "y"}, .as = "a 0.5 ^", .edge = "a", .touches = true,     \
@@ -143,13 +143,13 @@
       .jumps = true,                                                           \
       .at_edge = "floor(...), whose argument reaches a whole number,")         \
     X(SPECIAL, BESSEL_J0, "bessel_j0", 1, NEVH__S(bessel_j0)(a),               \
-      NEVH__G(-nevh__bessel_j1(a)), 0, .usage = 0)                                      \
+      NEVH__G(-nevh__bessel_j1(a)), 0, .usage = 0)                             \
     X(SPECIAL, BESSEL_J1, "bessel_j1", 1, NEVH__S(bessel_j1)(a),               \
-      NEVH__G(nevh__bessel_j1_slope(a)), 0, .usage = 0)                                   \
+      NEVH__G(nevh__bessel_j1_slope(a)), 0, .usage = 0)                        \
     X(SPECIAL, ELLIPTIC_K, "elliptic_k", 1, NEVH__S(elliptic_k)(a),            \
-      NEVH__G(nevh__elliptic_k_slope(a)), 0, .usage = 0)                                  \
+      NEVH__G(nevh__elliptic_k_slope(a)), 0, .usage = 0)                       \
     X(SPECIAL, ELLIPTIC_E, "elliptic_e", 1, NEVH__S(elliptic_e)(a),            \
-      NEVH__G(nevh__elliptic_e_slope(a)), 0, .usage = 0)                                  \
+      NEVH__G(nevh__elliptic_e_slope(a)), 0, .usage = 0)                       \
     X(SPECIAL, ECCENTRIC, "kepler", 2, NEVH__S(kepler)(a, b),                  \
       NEVH__G(nevh__kepler_slope(y, b)),                                       \
       NEVH__G(NEVH__F(sin)(y) * nevh__kepler_slope(y, b)),                     \

@@ -5,8 +5,6 @@
 #include "expression/tape_operations_private.h"
 #include <math.h>
 
-#define NEVH__F(f) f
-
 typedef struct {
     double low, high;
 } interval;

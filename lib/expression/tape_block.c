@@ -11,22 +11,53 @@ static double *write_row(double *journal, const double row[], size_t columns) {
     return journal + columns;
 }
 
-/* Without vector functions the two forms are the same. */
-#ifdef NEVH__VECTORS
-#define NEVH__F(f) nevh_simd_##f
-#define NEVH__RUN  run_vectors
-#include "expression/tape_run.h"
-#else
-#define run_vectors run_libm
-#endif
-#define NEVH__F(f) f
-#define NEVH__RUN  run_libm
-#include "expression/tape_run.h"
+/* Applies an operation to whole vectors; numbers are not advanced. */
+#define EACH(row, value)                                                       \
+    for (size_t i = 0; i < columns; i += 8) {                                  \
+        const double *x = from_a + i * step_a, *z = from_b + i * step_b;       \
+        NEVH_LANES(lane, 8) {                                                  \
+            double a = x[lane], b = z[lane];                                   \
+            (void)b;                                                           \
+            (row)[i + lane] = value;                                           \
+        }                                                                      \
+    }
+#define CASE(kind, identifier, name, arity, value, by_a, by_b, ...)            \
+    case NEVH__##identifier:                                                   \
+        EACH(to, value)                                                        \
+        break;
+
+NEVH_SIMD static double *run_operations(const nevh__rows *r,
+                                        const nevh__instruction *from,
+                                        const nevh__instruction *until,
+                                        double *journal) {
+    size_t columns = r->columns;
+    for (const nevh__instruction *at = from; at < until; at++) {
+        const double *from_a = nevh__rows_at(r, at->a);
+        const double *from_b = nevh__rows_at(r, at->b);
+        size_t step_a = at->a.kind != NEVH__NUMBER;
+        size_t step_b = at->b.kind != NEVH__NUMBER;
+        bool last = r->out && at + 1 == until;
+        double *to = last ? r->out : r->slots + at->to * columns;
+        double *also = r->slots + at->also * columns;
+        if (journal && !at->fresh)
+            journal = write_row(journal, to, columns);
+        if (journal && !at->also_fresh)
+            journal = write_row(journal, also, columns);
+        switch (at->operation) {
+            NEVH__OPERATIONS(CASE)
+        case NEVH__SINCOS:
+            EACH(to, NEVH__F(sin)(a))
+            EACH(also, NEVH__F(cos)(a))
+        }
+    }
+    return journal;
+}
+#undef CASE
+#undef EACH
 
 double *nevh__rows_run(const nevh__rows *r, const nevh__instruction code[],
                        size_t length, double journal[]) {
-    return (r->portable ? run_libm : run_vectors)(r, code, code + length,
-                                                  journal);
+    return run_operations(r, code, code + length, journal);
 }
 
 nevh__rows nevh__rows_of(const nevh__tape *tape, size_t width, size_t from,

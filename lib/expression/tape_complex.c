@@ -5,8 +5,6 @@
 #include "expression/tape_inside_private.h"
 #include "expression/tape_operations_private.h"
 
-#define NEVH__F(f) f
-
 typedef struct {
     double re, im;
 } number;
@@ -24,7 +22,7 @@ NEVH__INLINE number apply(unsigned operation, number u, number v,
     switch (operation) {
         NEVH__OPERATIONS(CASE)
     case NEVH__SINCOS: {
-        double sine = sin(a), cosine = cos(a);
+        double sine = nevh_simd_sin(a), cosine = nevh_simd_cos(a);
         *also = (number){cosine, -sine * u.im};
         return (number){sine, cosine * u.im};
     }

@@ -41,17 +41,74 @@ static const double *put_back(const sweep *s, uint32_t slot,
     return journal - columns;
 }
 
-/* Without vector functions the two forms are the same. */
-#ifdef NEVH__VECTORS
-#define NEVH__F(f)        nevh_simd_##f
-#define NEVH__NAMED(name) name##_vectors
-#include "expression/tape_back.h"
-#else
-#define backwards_vectors backwards_libm
-#endif
-#define NEVH__F(f)        f
-#define NEVH__NAMED(name) name##_libm
-#include "expression/tape_back.h"
+/* One operation's adjoints g times its derivative by one argument are added to
+   those of the argument, d; its last use comes first, and adds to nothing. */
+#define EACH(product)                                                          \
+    for (size_t i = 0; i < columns; i += 8) {                                  \
+        const double *x = from_a + i * step_a, *z = from_b + i * step_b;       \
+        NEVH_LANES(lane, 8) {                                                  \
+            double a = x[lane], b = z[lane], y = from_y[i + lane];             \
+            double g = from_g[i + lane];                                       \
+            (void)a, (void)b, (void)y, (void)g;                                \
+            d[i + lane] = sum[i + lane] + product;                             \
+        }                                                                      \
+    }                                                                          \
+    break;
+#define CASE_A(kind, identifier, name, arity, value, by_a, by_b, ...)          \
+    case NEVH__##identifier:                                                   \
+        EACH(by_a)
+#define CASE_B(kind, identifier, name, arity, value, by_a, by_b, ...)          \
+    case NEVH__##identifier:                                                   \
+        EACH(by_b)
+#define ROWS(argument)                                                         \
+    size_t columns = s->rows.columns;                                          \
+    const double *from_a = nevh__rows_at(&s->rows, at->a);                     \
+    const double *from_b = nevh__rows_at(&s->rows, at->b);                     \
+    const double *from_y = s->rows.slots + at->to * columns;                   \
+    const double *from_g = s->base[NEVH__SLOT] + at->to * columns;             \
+    const double *sum = argument.last ? nothing : d;                           \
+    size_t step_a = at->a.kind != NEVH__NUMBER;                                \
+    size_t step_b = at->b.kind != NEVH__NUMBER
+
+NEVH__INLINE void hand_on_a(const sweep *s, const nevh__instruction *at,
+                            double *d) {
+    ROWS(at->a);
+    const double *from_cosine = s->rows.slots + at->also * columns;
+    const double *from_g_cosine = s->base[NEVH__SLOT] + at->also * columns;
+    switch (at->operation) {
+        NEVH__OPERATIONS(CASE_A)
+    case NEVH__SINCOS:
+        EACH(nevh__chain(g, from_cosine[i + lane]) -
+             nevh__chain(from_g_cosine[i + lane], y))
+    }
+}
+
+NEVH__INLINE void hand_on_b(const sweep *s, const nevh__instruction *at,
+                            double *d) {
+    ROWS(at->b);
+    switch (at->operation) { NEVH__OPERATIONS(CASE_B) }
+}
+
+/* journal: where it ends. */
+NEVH_SIMD static void backwards(const sweep *s, size_t from, size_t until,
+                                const double *journal) {
+    const nevh__instruction *code = s->tape->code;
+    for (const nevh__instruction *at = code + until; at-- > code + from;) {
+        double *d_a = adjoint(s, at->a), *d_b = adjoint(s, at->b);
+        if (d_a)
+            hand_on_a(s, at, d_a);
+        if (d_b)
+            hand_on_b(s, at, d_b);
+        if (!at->also_fresh)
+            journal = put_back(s, at->also, journal);
+        if (!at->fresh)
+            journal = put_back(s, at->to, journal);
+    }
+}
+#undef EACH
+#undef CASE_A
+#undef CASE_B
+#undef ROWS
 
 /* 1, but NaN where the value is not finite. */
 static void seed(const sweep *s) {
@@ -71,8 +128,7 @@ static void run_back(const sweep *s, size_t from, size_t until, double *scratch,
         double *end = nevh__rows_run(&s->rows, code + from, length, scratch);
         if (until == s->tape->length)
             seed(s);
-        (s->rows.portable ? backwards_libm : backwards_vectors)(s, from, until,
-                                                                end);
+        backwards(s, from, until, end);
         return;
     }
     size_t kept = s->tape->slots * s->rows.columns, half = length / 2;
@@ -94,7 +150,6 @@ typedef struct {
     double *dh_dq, *dh_dp, *dh_dt;
     const nevh__tape *tape;
     size_t width;
-    bool portable;
 } task;
 
 static void sweep_columns(const task *job, size_t from, size_t columns,
@@ -109,7 +164,6 @@ static void sweep_columns(const task *job, size_t from, size_t columns,
                   (job->dh_dp ? NEVH__BY_P : 0u) |
                   (job->dh_dt ? NEVH__BY_T : 0u),
     };
-    s.rows.portable = job->portable;
     s.base[NEVH__T] = job->dh_dt ? job->dh_dt + from : NULL;
     s.base[NEVH__Q] = job->dh_dq ? job->dh_dq + from : NULL;
     s.base[NEVH__P] = job->dh_dp ? job->dh_dp + from : NULL;
@@ -177,22 +231,19 @@ static void sweep_task(const task *job) {
         sweep_most(job);
 }
 
-#define GRADIENT(name, is_portable)                                            \
-    void name(size_t width, const double t[], const double q[],                \
-              const double p[], const double c[], const void *tape,            \
-              double dh_dq[], double dh_dp[]) {                                \
-        sweep_task(&(task){.t = t,                                             \
-                           .q = q,                                             \
-                           .p = p,                                             \
-                           .c = c,                                             \
-                           .dh_dq = dh_dq,                                     \
-                           .dh_dp = dh_dp,                                     \
-                           .tape = tape,                                       \
-                           .width = width,                                     \
-                           .portable = is_portable});                          \
-    }
-GRADIENT(nevh__tape_block_gradient, false)
-GRADIENT(nevh__tape_portable_gradient, true)
+void nevh__tape_block_gradient(size_t width, const double t[], const double q[],
+                               const double p[], const double c[],
+                               const void *tape, double dh_dq[],
+                               double dh_dp[]) {
+    sweep_task(&(task){.t = t,
+                       .q = q,
+                       .p = p,
+                       .c = c,
+                       .dh_dq = dh_dq,
+                       .dh_dp = dh_dp,
+                       .tape = tape,
+                       .width = width});
+}
 
 void nevh__tape_block_time(size_t width, const double t[], const double q[],
                            const double p[], const double c[], const void *tape,

@@ -56,7 +56,6 @@ typedef struct {
     size_t pitch[NEVH__KINDS];
     double *slots; /* base[NEVH__SLOT] */
     size_t columns;
-    bool portable; /* functions are libm's, not those of vectors */
     double *out; /* where the last operation's value goes; NULL: to its slot */
 } nevh__rows;
 

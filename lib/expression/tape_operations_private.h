@@ -1,8 +1,7 @@
 /* nevh: what the operations of a tape do.
    SPDX-License-Identifier: GPL-3.0-or-later
 
-   What the entries of operations_private.h call, of doubles.  Before they are
-   used, NEVH__F(f) is defined: which form of libm's f to take. */
+   What the entries of operations_private.h call, of doubles. */
 #ifndef NEVH_TAPE_OPERATIONS_PRIVATE_H
 #define NEVH_TAPE_OPERATIONS_PRIVATE_H
 
@@ -48,6 +47,7 @@ NEVH__INLINE double nevh__chain(double x, double y) {
 #define NEVH__THRICE_G(slope) nevh__chain(3 * g, slope)
 
 /* The defaults, for doubles. */
+#define NEVH__F(f) nevh_simd_##f
 #define NEVH__L(f) f
 #define NEVH__H(f) nevh__##f
 #define NEVH__S(f) nevh__##f

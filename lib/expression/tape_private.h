@@ -161,9 +161,7 @@ size_t nevh__tape_length(const nevh__tape *);
 
 /* The functions of a nevh_term whose params is the tape; nevh_term_fn etc.
 
-   In value and in the real part of complex_value each operation is libm's, in
-   blocks libmvec's (below 4 ulp) where there is one: without trigonometric
-   and other functions, or with NEVH_PORTABLE, the three agree to the bit.
+   Value, block and the real part of complex_value agree to the bit.
    Where the value is not finite no derivative is: each by a variable that the
    tape reads is NaN.
    cost     gradient: about 2.5 values; with more than about 1000 operations,
@@ -178,11 +176,6 @@ void nevh__tape_block_gradient(size_t width, const double t[], const double q[],
                                const double p[], const double c[],
                                const void *tape, double dh_dq[],
                                double dh_dp[]);
-/* The same by libm's functions, not those of vectors. */
-void nevh__tape_portable_gradient(size_t width, const double t[],
-                                  const double q[], const double p[],
-                                  const double c[], const void *tape,
-                                  double dh_dq[], double dh_dp[]);
 /* The derivative with respect to t. */
 void nevh__tape_block_time(size_t width, const double t[], const double q[],
                            const double p[], const double c[], const void *tape,

@@ -7,8 +7,6 @@
 #include <float.h>
 #include <math.h>
 
-#define NEVH__F(f) f
-
 /* Each operation's own roundings are below that, relative to its result. */
 static const double own = 2 * DBL_EPSILON;
 
@@ -32,9 +30,10 @@ NEVH__INLINE number apply(unsigned operation, number u, number v,
     switch (operation) {
         NEVH__OPERATIONS(CASE)
     case NEVH__SINCOS:
-        *also = (number){cos(a), fabs(sin(a)) * u.error};
+        y = nevh_simd_sin(a);
+        *also = (number){nevh_simd_cos(a), fabs(y) * u.error};
         also->error += own * fabs(also->value);
-        return (number){sin(a), fabs(cos(a)) * u.error};
+        return (number){y, fabs(also->value) * u.error};
     default:
         return (number){NAN, NAN};
     }

@@ -3,8 +3,6 @@
 #include "expression/tape_inside_private.h"
 #include "expression/tape_operations_private.h"
 
-#define NEVH__F(f) f
-
 #define CASE(kind, identifier, name, arity, value, by_a, by_b, ...)            \
     case NEVH__##identifier:                                                   \
         return value;
@@ -14,8 +12,8 @@ NEVH__INLINE double apply(unsigned operation, double a, double b,
     switch (operation) {
         NEVH__OPERATIONS(CASE)
     case NEVH__SINCOS:
-        *also = cos(a);
-        return sin(a);
+        *also = nevh_simd_cos(a);
+        return nevh_simd_sin(a);
     default:
         return NAN;
     }

@@ -107,9 +107,4 @@ bool nevh__add_slopes(const nevh_gradient *, size_t apart, size_t lanes,
 int nevh__central_fail(nevh_field *, nevh__planned *, const nevh__block *,
                        size_t lane, size_t instance, size_t k);
 
-/* The function of a term's derivatives: under `portable`, that of a formula is by
-   libm. */
-nevh_block_gradient_fn nevh__exact_gradient(const nevh_field *,
-                                            const nevh_term *);
-
 #endif

@@ -81,7 +81,7 @@ static bool exact_block_add_part(nevh__evaluation *e, nevh__planned *term,
     nevh__term_part *x = &e->terms[e->count++];
     *x = (nevh__term_part){
         .term = term,
-        .gradient = nevh__exact_gradient(f, decl),
+        .gradient = decl->gradient,
         .params = decl->params,
         .stride = stride,
         .t = decl->time ? e->at.t : f->zeros,

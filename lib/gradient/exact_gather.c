@@ -126,13 +126,6 @@ static inline bool exact_gather_add(const nevh__scatter_map *map, size_t width,
     return !(found & 1);
 }
 
-nevh_block_gradient_fn nevh__exact_gradient(const nevh_field *f,
-                                            const nevh_term *term) {
-    return f->portable && term->gradient == nevh__tape_block_gradient
-               ? nevh__tape_portable_gradient
-               : term->gradient;
-}
-
 /* All instances in one block; whether all is finite. */
 static inline bool take_block(nevh_field *f, nevh__planned *term,
                               const nevh__places *at) {
@@ -148,10 +141,9 @@ static inline bool take_block(nevh_field *f, nevh__planned *term,
         slopes_q = at->dh_dq;
     if (of_p && in_place && term == f->whole_p)
         slopes_p = at->dh_dp;
-    nevh__exact_gradient(f, decl)(
-        stride, exact_gather_times(f, decl, at, stride), q, p,
-        exact_gather_constants(f, term, width, stride), decl->params,
-        at->dh_dq ? slopes_q : NULL, at->dh_dp ? slopes_p : NULL);
+    decl->gradient(stride, exact_gather_times(f, decl, at, stride), q, p,
+                   exact_gather_constants(f, term, width, stride), decl->params,
+                   at->dh_dq ? slopes_q : NULL, at->dh_dp ? slopes_p : NULL);
     bool finite = !of_q || exact_gather_add(&term->to_q, width, stride,
                                             slopes_q, at->dh_dq);
     return (!of_p || exact_gather_add(&term->to_p, width, stride, slopes_p,
@@ -208,9 +200,9 @@ static int exact_gather_take_part(nevh_field *f, nevh__planned *term,
     const double *q = f->rows, *p = q + term->nq * b->stride;
     const double *c = p + term->np * b->stride;
     double *slopes_p = f->slopes + term->nq * b->stride;
-    nevh__exact_gradient(f, decl)(
-        b->stride, decl->time ? f->times : f->zeros, q, p, c, decl->params,
-        at->dh_dq ? f->slopes : NULL, at->dh_dp ? slopes_p : NULL);
+    decl->gradient(b->stride, decl->time ? f->times : f->zeros, q, p, c,
+                   decl->params, at->dh_dq ? f->slopes : NULL,
+                   at->dh_dp ? slopes_p : NULL);
     size_t first = at->dh_dq ? 0 : term->nq,
            last = at->dh_dp ? term->nv : term->nq;
     if (term->turned && b->lanes == 1 &&

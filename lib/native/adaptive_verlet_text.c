@@ -5,9 +5,6 @@
 #include "native/native_private.h"
 #include "work/transform_private.h"
 
-static const char needs[] = "extern double hypot(double, double) CONST;\n"
-                            "extern double pow(double, double) CONST;\n";
-
 bool nevh__write_adaptive_verlet(nevh__writer *w, nevh_work *work) {
     const nevh__step_control *table = work->integrator->table;
     double unit_p, unit_q = nevh__adaptive_verlet_units(work, &unit_p);
@@ -21,8 +18,9 @@ bool nevh__write_adaptive_verlet(nevh__writer *w, nevh_work *work) {
     nevh__number_text(NEVH__LEAST_RATE, least);
     nevh__write_constant(w, "UNIT_Q", unit_q);
     nevh__write_constant(w, "UNIT_P", unit_p);
-    nevh__write(w, "static const double LEAST_RATE = %s;\n%s", least,
-                w->readable ? "" : needs);
+    nevh__write(w, "static const double LEAST_RATE = %s;\n", least);
+    nevh__write_elementary(w, NULL, "hypot");
+    nevh__write_elementary(w, NULL, "pow");
     nevh__write_lines(w, nevh__adaptive_verlet_step_text);
     if (w->readable)
         nevh__write_lines(w, nevh__fraction_text);

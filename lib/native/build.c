@@ -161,8 +161,10 @@ static bool was_late(const place *p, double seconds,
         lstat(p->late, &found) || found.st_uid != geteuid())
         return false;
     double age = difftime(time(NULL), found.st_mtime);
-    if (age < 0 || age > APART)
+    if (age < 0 || age > APART) {
+        unlink(p->late);
         return false;
+    }
     snprintf(why, NEVH__WHY_NATIVE, "%s", NEVH__TOO_LONG);
     return true;
 }

@@ -41,7 +41,9 @@ static bool is_taken(const char *name) {
         if (strcmp(name, words[i]) == 0)
             return true;
     return is_generated(name) || strstr(name, "__") ||
-           strncmp(name, "STAGE_", strlen("STAGE_")) == 0;
+           strncmp(name, "STAGE_", strlen("STAGE_")) == 0 ||
+           strncmp(name, "one_", strlen("one_")) == 0 ||
+           strncmp(name, "ONE_", strlen("ONE_")) == 0;
 }
 
 /* x[3] is x_3.  "": the name has characters that names in C have not, or that of
@@ -164,10 +166,8 @@ static const char add[] =
     "    *sum = next;\n}\n\n";
 
 static bool energy_text_write_term(nevh__writer *w, const nevh_term *is) {
-    nevh__formula_text formula = {.tape = is->params,
-                                  .scalar = true,
-                                  .variable = energy_text_name_at_state,
-                                  .data = is};
+    nevh__formula_text formula = {
+        .tape = is->params, .variable = energy_text_name_at_state, .data = is};
     nevh__write_effect(w, is);
     for (size_t i = 0; i < is->count; i++) {
         char value[NEVH__NAME];

@@ -154,18 +154,17 @@ static bool write_forwards(nevh__writer *w, nevh__formula_text *f, reading *r,
                            char result[NEVH__NAME], double *most) {
     const nevh__tape *tape = f->tape;
     f->id = w->formulas++;
-    f->scalar |= w->readable;
     write_numbers(w, f);
     for (uint32_t i = 0; i < tape->length; i++) {
         const nevh__instruction *at = &tape->code[i];
         names x;
         if (nevh__operation_is_special(at->operation)) {
-            w->refusal = "it calls a function that libm does not have";
+            w->refusal = "it calls a function that compiled steps do not have";
             return false;
         }
         trace(f, r, i);
         find_names(w, f, r, i, &x);
-        nevh__operation_names m = {x.a, x.b, NULL, NULL, f->lanes, f->scalar};
+        nevh__operation_names m = {x.a, x.b, NULL, NULL, f->lanes};
         bool pair = at->operation == NEVH__SINCOS;
         nevh__write_operation(w, pair ? NEVH__SIN : at->operation,
                               NEVH__OPERATION_VALUE, x.y, &m);
@@ -239,8 +238,7 @@ static void formula_text_hand_on(nevh__writer *w, const nevh__formula_text *f,
     }
     nevh__write_operation(
         w, at->operation, second ? NEVH__OPERATION_BY_B : NEVH__OPERATION_BY_A,
-        product,
-        &(nevh__operation_names){x->a, x->b, x->y, g, f->lanes, f->scalar});
+        product, &(nevh__operation_names){x->a, x->b, x->y, g, f->lanes});
     if (*begun)
         nevh__write(w, "    %s += %s;\n", to, product);
     else
@@ -377,7 +375,7 @@ static void formula_text_write_parts(nevh__writer *w,
             write_parts_of_both(w, f, i, &x, of_a);
             continue;
         }
-        nevh__operation_names m = {x.a, x.b, x.y, of_a, NULL, true};
+        nevh__operation_names m = {x.a, x.b, x.y, of_a, NULL};
         nevh__write(w, "    double iv%u_%u = ", f->id, i);
         if (a)
             nevh__write_expression(w, at->operation, NEVH__OPERATION_BY_A, &m);
@@ -395,7 +393,6 @@ bool nevh__write_complex(nevh__writer *w, nevh__formula_text *f,
                          nevh__variable by, size_t k, char result[NEVH__NAME]) {
     reading r;
     double most;
-    f->scalar = true;
     if (!new_reading(f->tape, &r)) {
         w->failed = true;
         return false;

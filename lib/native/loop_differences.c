@@ -81,7 +81,6 @@ static bool write_point(const nevh__term_loop *x, size_t k, const char *step,
     moved m = {x, k, w->formulas};
     nevh__formula_text f = {.tape = x->s->term->term->decl.params,
                             .lanes = w->readable ? NULL : &nevh__eight,
-                            .scalar = x->s->f->portable,
                             .variable = name_moved,
                             .data = &m};
     const char *type = w->readable ? "double" : "wide";

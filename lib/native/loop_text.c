@@ -158,7 +158,6 @@ void nevh__write_row(const nevh__term_loop *x, size_t k, const char *name) {
 bool nevh__write_loop_body(const nevh__term_loop *x) {
     nevh__formula_text f = {.tape = nevh__loop_term(x)->params,
                             .lanes = x->s->w->readable ? NULL : &nevh__eight,
-                            .scalar = x->s->f->portable,
                             .variable = nevh__loop_name,
                             .data = x};
     if (x->method)

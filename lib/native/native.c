@@ -226,10 +226,21 @@ bool nevh__native_write(nevh__writer *text, nevh_work *w) {
     return !text->refusal && families[family_of(w)].write(text, w);
 }
 
-/* The text of what is compiled; false: there is none. */
+/* The text of what is compiled; false: there is none.  What the steps call is known
+   once they are written. */
 static bool write_text(nevh__writer *text, nevh_work *w) {
-    nevh__write_prelude(text);
-    return nevh__native_write(text, w) && !text->failed;
+    nevh__writer all = {0};
+    bool fine = nevh__native_write(text, w) && !text->failed;
+    if (!fine)
+        return false;
+    nevh__write_prelude(&all, text);
+    nevh__write(&all, "%s", text->text);
+    text->failed = all.failed;
+    free(text->text);
+    text->text = all.text;
+    text->used = all.used;
+    text->room = all.room;
+    return !text->failed;
 }
 
 /* Arguments of steps, but for numbers; false when memory is out. */

@@ -67,7 +67,6 @@ bool nevh__write_noise(nevh__writer *w, const nevh_field *f) {
         place at = {&f->terms[i], 0};
         const nevh_term *is = &at.term->term->decl;
         nevh__formula_text formula = {.tape = is->params,
-                                      .scalar = f->portable,
                                       .variable = noise_text_name_at_state,
                                       .data = &at};
         if (!at.term->delta)

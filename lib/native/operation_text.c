@@ -56,10 +56,9 @@ static bool write_name(nevh__writer *w, const char *word, size_t length,
 /* One word of the table; returns where the text goes on. */
 static const char *write_word(nevh__writer *w, const char *word, size_t length,
                               const nevh__operation_names *m) {
-    /* NEVH__F(sin): of a lane; NEVH__H: of the text's own; NEVH__L: of libm */
+    /* NEVH__F(sin): elementary; NEVH__H: of the text's own; NEVH__L: of libm */
     static const char *const list[] = {"NEVH__F", "NEVH__H", "NEVH__L", NULL};
-    const char *lane = m->lanes ? m->lanes->call : m->scalar ? "" : "lane_";
-    const char *const before[] = {lane, "nevh__", ""};
+    const char *const before[] = {"", "nevh__", ""};
     const char *after = word + length;
     if (write_name(w, word, length, m))
         return after;
@@ -69,7 +68,9 @@ static const char *write_word(nevh__writer *w, const char *word, size_t length,
         return after;
     }
     size_t bytes = strcspn(after, ")") - 1;
-    nevh__write(w, "%s%.*s", before[i], (int)bytes, after + 1);
+    nevh__write(w, "%s%.*s",
+                i ? before[i] : nevh__write_elementary(w, m->lanes, after + 1),
+                (int)bytes, after + 1);
     return after + bytes + 2;
 }
 
@@ -132,14 +133,13 @@ void nevh__write_operation(nevh__writer *w, unsigned operation,
                            nevh__operation_part part, const char *to,
                            const nevh__operation_names *m) {
     const char *text = texts[operation][part];
-    bool calls = m->scalar && strstr(text, "NEVH__F(");
     nevh__write(w, "    %s %s = ", m->lanes ? m->lanes->type : "double", to);
-    if (!m->lanes || (!calls && !nevh__operation_of(operation)->lanewise)) {
+    if (!m->lanes || !nevh__operation_of(operation)->lanewise) {
         write_text(w, text, m);
         nevh__write(w, ";\n");
         return;
     }
-    nevh__operation_names one = {"a_", "b_", "y_", "g_", NULL, m->scalar};
+    nevh__operation_names one = {"a_", "b_", "y_", "g_", NULL};
     nevh__write(w, "%s;\n    %s { double a_ = %s[lane], b_ = %s[lane]", m->a,
                 m->lanes->each, m->a, m->b);
     if (m->y)

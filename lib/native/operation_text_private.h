@@ -10,7 +10,6 @@
 typedef struct {
     const char *a, *b, *y, *g;
     const nevh__lane_words *lanes; /* as in nevh__formula_text */
-    bool scalar;
 } nevh__operation_names;
 
 typedef enum {

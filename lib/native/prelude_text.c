@@ -1,9 +1,8 @@
-/* nevh: what formulas as C text need before them.
-
-   lane_sin(x) is for one number what the library's blocks have for each of
-   eight: functions of vectors, whose last bits are their own and depend on the
-   processor.  wide is eight numbers, whatever vectors the processor has.
+/* nevh: what formulas as C text need before them.  nevh__one_sin is the elementary
+   function of one number, few_sin that of four, wide_sin that of eight: by vectors that
+   the processor has, since numbers have few registers otherwise.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "elementary/elementary_list.h"
 #include "native/writer_private.h"
 #include <nevh/simd.h>
 #include <stdio.h>
@@ -23,137 +22,140 @@ int nevh__vector_lanes(void) {
 #endif
 }
 
-/* Functions of libm, and which of them have a form for vectors. */
+/* Families of elementary functions. */
+enum { CIRCLE = 1, POWERS = 2, HYPERBOLIC = 4, ARCS = 8, ROOTS = 16 };
+
 static const struct {
     const char *name;
-    int arguments;
-    bool more;  /* only newer ones do */
-    bool alike; /* forms of four and of eight lanes are one algorithm */
-} functions[] = {{"sin", 1, false, true},  {"cos", 1, false, true},
-                 {"exp", 1, false, false}, {"log", 1, false, false},
-                 {"pow", 2, false, false}, {"tan", 1, true, false},
-                 {"asin", 1, true, false}, {"acos", 1, true, false},
-                 {"atan", 1, true, false}, {"sinh", 1, true, false},
-                 {"cosh", 1, true, false}, {"tanh", 1, true, false},
-                 {"cbrt", 1, true, false}, {"atan2", 2, true, false},
-                 {"hypot", 2, true, false}};
+    unsigned family;
+    bool two; /* of two numbers */
+} functions[] = {
+#define ONE(name, f, family) {#f, family, false},
+#define TWO(name, f, family) {#f, family, true},
+    NEVH__EACH_ONE(ONE) NEVH__EACH_TWO(TWO)
+#undef ONE
+#undef TWO
+};
+enum { FUNCTIONS = sizeof functions / sizeof *functions };
+enum { OF_ONE, OF_FOUR, OF_EIGHT };
 
-#ifdef NEVH__VECTORS_MORE
-static const bool has_more = true;
-#else
-static const bool has_more = false;
-#endif
-
-/* Without vectors, lane by lane. */
-static void write_plain(nevh__writer *w, const char *f, bool two) {
-    const nevh__lane_words *words[] = {&nevh__eight, &nevh__four};
-    nevh__write(w, "#define lane_%s %s\n", f, f);
-    for (int i = 0; i < 2; i++)
-        nevh__write_filled(
-            w,
-            "INLINE $1 $2$3($1 x$4) { $1 z; $5 z[lane] = $3(x[lane]$6); return "
-            "z; }\n",
-            (const char *const[]){words[i]->type, words[i]->call, f,
-                                  !two ? ""
-                                  : i  ? ", few y"
-                                       : ", wide y",
-                                  words[i]->each, two ? ", y[lane]" : ""});
+const char *nevh__write_elementary(nevh__writer *w,
+                                   const nevh__lane_words *lanes,
+                                   const char *function) {
+    size_t length = strspn(function, "abcdefghijklmnopqrstuvwxyz0123456789");
+    for (size_t i = 0; i < FUNCTIONS; i++)
+        if (strlen(functions[i].name) == length &&
+            strncmp(functions[i].name, function, length) == 0) {
+            w->calls[OF_ONE] |= 1u << i;
+            if (lanes)
+                w->calls[lanes == &nevh__eight ? OF_EIGHT : OF_FOUR] |= 1u << i;
+            return lanes ? lanes->call : "nevh__one_";
+        }
+    return lanes ? lanes->call : "";
 }
 
-static void vector_name(const char *f, bool two, int lanes, char name[40]) {
-    snprintf(name, 40, "_ZGV%cN%d%s_%s",
-             lanes == 8   ? 'e'
-             : lanes == 4 ? 'd'
-                          : 'b',
-             lanes, two ? "vv" : "v", f);
+static unsigned families_of(unsigned calls) {
+    unsigned families = 0;
+    for (size_t i = 0; i < FUNCTIONS; i++)
+        if (calls >> i & 1)
+            families |= functions[i].family;
+    return families;
 }
 
-/* One number by four lanes takes two thirds of the time of eight. */
-static void write_lane(nevh__writer *w, const char *f) {
-    char name[40];
-    vector_name(f, false, 4, name);
-    nevh__write_filled(w,
-                       "extern four $1(four) CONST;\n"
-                       "INLINE double lane_$2(double x) { return $1((four){x, "
-                       "x, x, x})[0]; }\n"
-                       "INLINE few few_$2(few x) { return $1(x); }\n",
-                       (const char *const[]){name, f});
+/* Families that the text does not call are left out. */
+static void write_left_out(nevh__writer *w, unsigned families, bool done) {
+    static const char *const names[] = {"NEVH__NO_CIRCLE", "NEVH__NO_POWERS",
+                                        "NEVH__NO_HYPERBOLIC", "NEVH__NO_ARCS",
+                                        "NEVH__NO_ROOTS"};
+    for (unsigned i = 0; i < sizeof names / sizeof *names; i++)
+        if (!(families >> i & 1) && !done)
+            nevh__write_form(w, names[i]);
+        else if (!(families >> i & 1) && !w->readable)
+            nevh__write(w, "#undef %s\n", names[i]);
 }
 
-/* A function of numbers side by side by vectors of fewer lanes: $1 the type, $2
-   what its functions' names begin with, $3 the function, $4 $5 a second argument,
-   $6 how many vectors, $7 the vectors' function, $8 their second argument. */
-static const char by_parts[] =
-    "INLINE $1 $2$3($1 x$4) { union { $1 all; vector part[$6]; } u = {x}$5; for "
-    "(int i = 0; i < $6; i++) u.part[i] = $7(u.part[i]$8); return u.all; }\n";
-/* Four by eight, of which the others are not needed. */
-static const char by_eight[] =
-    "INLINE few few_$1(few x$2) { wide z = wide_$1((wide){x[0], x[1], x[2], x[3], "
-    "x[0], x[1], x[2], x[3]}$3); return (few){z[0], z[1], z[2], z[3]}; }\n";
-
-static void prelude_text_write_parts(nevh__writer *w, const char *f, bool two,
-                                     const nevh__lane_words *words, int parts,
-                                     const char *vector) {
-    char count[12], second[20];
-    snprintf(count, sizeof count, "%d", parts);
-    snprintf(second, sizeof second, ", %s y", words->type);
-    nevh__write_filled(w, by_parts,
-                       (const char *const[]){words->type, words->call, f,
-                                             two ? second : "",
-                                             two ? ", v = {y}" : "", count,
-                                             vector, two ? ", v.part[i]" : ""});
-}
-
-static void write_vector(nevh__writer *w, const char *f, bool two, int lanes,
-                         bool alike) {
-    char name[40];
-    vector_name(f, two, lanes, name);
-    nevh__write(w, "extern vector %s(vector%s) CONST;\n", name,
-                two ? ", vector" : "");
-    prelude_text_write_parts(w, f, two, &nevh__eight, 8 / lanes, name);
-    if (alike && lanes == 8) {
-        write_lane(w, f);
+/* The functions of so many numbers side by side, of vectors that the processor has. */
+static void write_lanes(nevh__writer *w, const nevh__lane_words *words,
+                        int lanes, unsigned calls) {
+    unsigned families = families_of(calls);
+    if (!calls)
         return;
-    }
-    nevh__write(w,
-                "INLINE double lane_%s(double x%s) { return "
-                "%s(SAME(x)%s)[0]; }\n",
-                f, two ? ", double y" : "", name, two ? ", SAME(y)" : "");
-    if (lanes < 8)
-        prelude_text_write_parts(w, f, two, &nevh__four, 4 / lanes, name);
-    else
-        nevh__write_filled(
-            w, by_eight,
-            (const char *const[]){
-                f, two ? ", few y" : "",
-                two ? ", (wide){y[0], y[1], y[2], y[3], y[0], y[1], y[2], y[3]}"
-                    : ""});
+    write_left_out(w, families, false);
+    nevh__write_filled(w,
+                       "#define NEVH__NUMBER $1\n"
+                       "#define NEVH__PAIR $2pair\n"
+                       "#define NEVH__E(f) $2##f\n",
+                       (const char *const[]){words->type, words->call});
+    nevh__write(w, "#define NEVH__SIDE %d\n", lanes);
+    nevh__write_lines(w, nevh__elementary_lanes_text);
+    nevh__write_lines(w, nevh__elementary_text_text);
+    write_left_out(w, families, true);
 }
 
-void nevh__write_prelude(nevh__writer *w) {
-    static const char *const same[] = {"{x, x}", "{x, x, x, x}",
-                                       "{x, x, x, x, x, x, x, x}"};
+/* The functions of more numbers, by parts. */
+static void write_by_parts(nevh__writer *w, const nevh__lane_words *words,
+                           int parts, const nevh__lane_words *part,
+                           unsigned calls) {
+    char count[12];
+    snprintf(count, sizeof count, "%d", parts);
+    for (size_t i = 0; i < FUNCTIONS; i++)
+        if (calls >> i & 1)
+            nevh__write_filled(
+                w,
+                functions[i].two
+                    ? "INLINE $1 $2$3($1 x, $1 y) { union { $1 all; $4 part[$5]; "
+                      "} u = {x}, v = {y}; for (int i = 0; i < $5; i++) "
+                      "u.part[i] = $6$3(u.part[i], v.part[i]); return u.all; }\n"
+                    : "INLINE $1 $2$3($1 x) { union { $1 all; $4 part[$5]; } u = "
+                      "{x}; for (int i = 0; i < $5; i++) u.part[i] = "
+                      "$6$3(u.part[i]); return u.all; }\n",
+                (const char *const[]){words->type, words->call,
+                                      functions[i].name, part->type, count,
+                                      part->call});
+}
+
+void nevh__write_elementary_numbers(nevh__writer *w, const nevh__writer *text) {
+    unsigned families = families_of(text->calls[OF_ONE]);
+    if (!families)
+        return;
+    write_left_out(w, families, false);
+    nevh__write_lines(w, nevh__elementary_number_text);
+    nevh__write_lines(w, nevh__elementary_text_text);
+    nevh__write_lines(w, nevh__elementary_edges_text);
+    write_left_out(w, families, true);
+    for (size_t i = 0; !w->readable && i < FUNCTIONS; i++)
+        if (text->calls[OF_ONE] >> i & 1)
+            nevh__write(w, "#define nevh_simd_%s nevh__one_%s\n",
+                        functions[i].name, functions[i].name);
+}
+
+static void write_elementary_lanes(nevh__writer *w, int lanes,
+                                   const unsigned calls[]) {
+    static const nevh__lane_words two = {"couple", NULL, NULL, "couple_"};
+    unsigned few = calls[OF_FOUR], wide = calls[OF_EIGHT];
+    nevh__write(w, "#define NEVH__HAS_SQRT\n");
+    if (lanes == 8) {
+        write_lanes(w, &nevh__four, 4, few);
+        write_lanes(w, &nevh__eight, 8, wide);
+    } else if (lanes == 4) {
+        write_lanes(w, &nevh__four, 4, few | wide);
+        write_by_parts(w, &nevh__eight, 2, &nevh__four, wide);
+    } else {
+        write_lanes(w, &two, 2, few | wide);
+        write_by_parts(w, &nevh__four, 2, &two, few);
+        write_by_parts(w, &nevh__eight, 4, &two, wide);
+    }
+}
+
+void nevh__write_prelude(nevh__writer *w, const nevh__writer *text) {
     int lanes = nevh__vector_lanes();
     nevh__write_lines(w, nevh__compiled_formulas_text);
     nevh__write_lines(w, nevh__formula_needs_text);
-    if (lanes > 1)
-        nevh__write(w,
-                    "typedef double vector __attribute__((vector_size(%d)));\n"
-                    "typedef double four __attribute__((vector_size(32)));\n"
-                    "#define SAME(x) ((vector)%s)\n",
-                    8 * lanes, same[lanes == 8 ? 2 : lanes / 4]);
     if (lanes == 8)
         nevh__write(w, "#ifndef __AVX512F__\n#error no vectors of eight\n"
                        "#endif\n");
     if (lanes == 4)
         nevh__write(w, "#ifndef __AVX2__\n#error no vectors of four\n#endif\n");
-    for (size_t i = 0; i < sizeof functions / sizeof *functions; i++) {
-        bool two = functions[i].arguments == 2;
-        nevh__write(w, "extern double %s(double%s) CONST;\n", functions[i].name,
-                    two ? ", double" : "");
-        if (lanes > 1 && (has_more || !functions[i].more))
-            write_vector(w, functions[i].name, two, lanes, functions[i].alike);
-        else
-            write_plain(w, functions[i].name, two);
-    }
+    nevh__write_elementary_numbers(w, text);
+    write_elementary_lanes(w, lanes, text->calls);
 }

@@ -166,17 +166,24 @@ static bool write_body(nevh__writer *body, nevh_work *work,
 
 bool nevh__write_program(nevh__writer *w, nevh_work *work,
                          const nevh_program *p) {
-    nevh__writer body = {.readable = true};
+    nevh__writer body = {.readable = true}, all = {.readable = true};
     bool fine = write_body(&body, work, p);
     w->refusal = body.refusal;
     if (fine) {
-        nevh__names_shorten(body.text);
+        nevh__write_elementary_numbers(&all, &body);
+        nevh__write(&all, "%s", body.text);
+    }
+    fine &= !all.failed;
+    if (fine) {
+        nevh__names_shorten(all.text);
         write_comment(w, work, p);
-        nevh__write(w, "%s%s#include <string.h>\n\n", includes,
+        nevh__write(w, "%s%s%s#include <string.h>\n\n", includes,
+                    *body.calls ? "#include <stdint.h>\n" : "",
                     p->functions ? ""
                                  : "#include <stdio.h>\n#include <stdlib.h>\n");
-        fine = nevh__write_used(w, body.text);
+        fine = nevh__write_used(w, all.text);
     }
     nevh__writer_free(&body);
+    nevh__writer_free(&all);
     return fine && !w->failed;
 }

@@ -10,7 +10,8 @@ static bool is_word(char c) {
     return isalnum((unsigned char)c) || c == '_';
 }
 
-/* True if a line that is no comment has a word; call: with a parenthesis behind it. */
+/* True if a line that is no comment has a word; call: with a parenthesis behind it, as
+   a function that is called or handed on. */
 static bool has_word(const char *line, const char *word, size_t length,
                      bool call) {
     if (strncmp(line + strspn(line, " "), "/*", 2) == 0)
@@ -18,7 +19,8 @@ static bool has_word(const char *line, const char *word, size_t length,
     for (const char *at = line; (at = strchr(at, *word)); at++)
         if (strncmp(at, word, length) == 0 &&
             (at == line || !is_word(at[-1])) &&
-            (call ? at[length] == '(' : !is_word(at[length])))
+            (call ? at[length] == '(' || at[length] == ')'
+                  : !is_word(at[length])))
             return true;
     return false;
 }
@@ -35,6 +37,7 @@ typedef struct {
     } open[MOST_OPEN];
     size_t depth;
     bool text, comment; /* a string, or a comment: has none */
+    bool closing;       /* the next parenthesis that closes goes */
 } renaming;
 
 static void take_line(renaming *r) {
@@ -85,12 +88,19 @@ static void take_character(renaming *r) {
 void nevh__names_shorten(char *text) {
     static const struct {
         const char *from, *to;
-    } names[] = {{"nevh__number", "double"},
+    } names[] = {{"NEVH__E(", "one_"},
+                 {"NEVH__NUMBER", "double"},
+                 {"NEVH__BITS", "uint64_t"},
+                 {"NEVH__PAIR", "one_pair"},
+                 {"NEVH__RARE ", ""},
+                 {"NEVH__MAIN", "static"},
+                 {"nevh__number", "double"},
                  {"NEVH_LANES", "EACH_LANE"},
                  {"NEVH__INLINE", "static"},
                  {"nevh__", ""},
                  {"NEVH__", ""},
                  {"NEVH_", ""},
+                 {"nevh_simd_", "one_"},
                  {"nevh_", ""}};
     renaming r = {.from = text, .to = text, .from_line = text, .to_line = text};
     bool begins = true;
@@ -99,15 +109,21 @@ void nevh__names_shorten(char *text) {
         while (i < count &&
                strncmp(r.from, names[i].from, strlen(names[i].from)) != 0)
             i++;
+        if (r.closing && *r.from == ')') {
+            r.from++;
+            r.closing = false;
+            continue;
+        }
         if (!begins || i == count) {
             begins = !is_word(*r.from);
             take_character(&r);
             continue;
         }
         r.from += strlen(names[i].from);
+        r.closing |= i == 0;
         for (const char *c = names[i].to; *c; c++)
             *r.to++ = *c;
-        begins = false;
+        begins = r.from[-1] == ' ';
     }
     *r.to = '\0';
 }
@@ -201,8 +217,62 @@ static bool is_named(char **lines, size_t i, size_t end, size_t count,
     return false;
 }
 
-/* A function that no other line names goes, and the comment before it; whether it
-   went. */
+/* The end of a macro, or of an array of constants, that begins at line i; i: none
+   does.  name: out, with its length */
+static size_t end_of_constant(char **lines, size_t i, size_t count,
+                              const char **name, size_t *length) {
+    static const char macro[] = "#define ", array[] = "static const ";
+    const char *line = lines[i];
+    if (!line)
+        return i;
+    bool is_macro = strncmp(line, macro, sizeof macro - 1) == 0;
+    const char *after = strchr(line, '[');
+    size_t end = i;
+    if (!is_macro && (strncmp(line, array, sizeof array - 1) != 0 || !after ||
+                      !strchr(after, '{')))
+        return i;
+    *name = is_macro ? line + sizeof macro - 1 : after;
+    while (!is_macro && *name > line && is_word((*name)[-1]))
+        --*name;
+    for (*length = 0; is_word((*name)[*length]);)
+        ++*length;
+    do
+        line = lines[end++];
+    while (end < count && lines[end] &&
+           (is_macro ? line[strlen(line) - 1] == '\\' : !strstr(line, "};")));
+    return end;
+}
+
+/* Lines go, and the comment before them where nothing else follows it. */
+static void drop_lines(char **lines, size_t i, size_t end, size_t count) {
+    size_t after = end;
+    while (end > i)
+        lines[--end] = NULL;
+    while (after < count && !lines[after])
+        after++;
+    bool comment = i > 0 && lines[i - 1] && strstr(lines[i - 1], "*/") &&
+                   (after == count || !lines[after][0]);
+    while (comment && i-- > 0) {
+        comment = lines[i] && strncmp(lines[i], "/*", 2) != 0;
+        lines[i] = NULL;
+    }
+}
+
+/* A macro or an array that no other line names goes; whether it went. */
+static bool drop_constant(char **lines, size_t i, size_t count) {
+    const char *name;
+    size_t length, end = end_of_constant(lines, i, count, &name, &length);
+    if (end == i)
+        return false;
+    for (size_t k = 0; k < count; k++)
+        if ((k < i || k >= end) && lines[k] &&
+            has_word(lines[k], name, length, false))
+            return false;
+    drop_lines(lines, i, end, count);
+    return true;
+}
+
+/* A function that no other line names goes; whether it went. */
 static bool drop_function(char **lines, size_t i, size_t count) {
     bool declared_only;
     size_t end = end_of_function(lines, i, count, &declared_only);
@@ -213,13 +283,7 @@ static bool drop_function(char **lines, size_t i, size_t count) {
                    strncmp(arguments, "(double *t", 10) == 0;
     if (advance || is_named(lines, i, end, count, declared_only))
         return false;
-    while (end > i)
-        lines[--end] = NULL;
-    bool comment = i > 0 && lines[i - 1] && strstr(lines[i - 1], "*/");
-    while (comment && i-- > 0) {
-        comment = lines[i] && strncmp(lines[i], "/*", 2) != 0;
-        lines[i] = NULL;
-    }
+    drop_lines(lines, i, end, count);
     return true;
 }
 
@@ -232,7 +296,8 @@ bool nevh__write_used(nevh__writer *w, char *text) {
     while (dropped) {
         dropped = false;
         for (size_t i = count; i-- > 0;)
-            dropped |= drop_function(lines, i, count);
+            dropped |= drop_function(lines, i, count) ||
+                       drop_constant(lines, i, count);
     }
     for (size_t i = count; i-- > 0;)
         if (!is_of_use(lines, i, count))

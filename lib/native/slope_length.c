@@ -34,7 +34,7 @@ void nevh__slope_values(const nevh_field *f, bool kick, uint64_t values[]) {
 /* The length of one half's text, in operations; INFINITY: there is none, and
    w->refusal has the reason. */
 static double half_operations(nevh__writer *w, const nevh_field *f, bool kick) {
-    bool wide = nevh__side_by_side(w, f);
+    bool wide = nevh__side_by_side(w);
     double operations = 0;
     for (size_t i = 0; i < f->n_terms; i++) {
         const nevh__planned *term = &f->terms[i];

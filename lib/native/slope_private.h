@@ -93,9 +93,8 @@ static inline bool nevh__is_wanted(const nevh_field *f,
     return f->parts >> term->part & 1 && (kick ? term->nq : term->np);
 }
 /* True if points of differences stand in a vector's lanes. */
-static inline bool nevh__side_by_side(const nevh__writer *w,
-                                      const nevh_field *f) {
-    return !f->portable && !w->readable && !nevh__has_lanes(w);
+static inline bool nevh__side_by_side(const nevh__writer *w) {
+    return !w->readable && !nevh__has_lanes(w);
 }
 /* True if the text of slopes that are called so often is short enough; else sets
    w->refusal. */

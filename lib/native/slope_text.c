@@ -91,7 +91,6 @@ static bool write_exact(sum *s) {
     nevh__formula_text f = {.tape = is->params,
                             .lanes =
                                 nevh__has_lanes(s->of.w) ? &nevh__eight : NULL,
-                            .scalar = s->of.f->portable,
                             .variable = slope_text_name_at_state,
                             .data = s};
     unsigned first = s->of.w->formulas;
@@ -289,7 +288,6 @@ static bool write_points(nevh__writer *w, stencil *x) {
     bool lanes = nevh__has_lanes(w);
     nevh__formula_text f = {.tape = x->s->of.term->term->decl.params,
                             .lanes = lanes ? &nevh__eight : NULL,
-                            .scalar = !lanes || x->s->of.f->portable,
                             .variable = name_at_point,
                             .data = x};
     for (x->at = 0; x->at < x->count; x->at++) {
@@ -365,8 +363,7 @@ static bool write_central(sum *s) {
     x.points =
         nevh__array(slopes * 2 * s->of.f->gradient->offsets, sizeof(point));
     x.slopes = nevh__array(slopes, sizeof(slope));
-    bool fine = x.points && x.slopes,
-         wide = nevh__side_by_side(s->of.w, s->of.f);
+    bool fine = x.points && x.slopes, wide = nevh__side_by_side(s->of.w);
     unsigned first = s->of.w->formulas;
     if (fine) {
         list_points(s, &x);

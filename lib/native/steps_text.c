@@ -74,7 +74,8 @@ static void write_for_readers(nevh__writer *w, const char *const lines[]) {
         const char *text = *lines + strspn(*lines, " ");
         if (!take_condition(w, &c, text) && !c.skipped &&
             strcmp(text, "NEVH_UNROLL\n") != 0 &&
-            strcmp(text, "NEVH__KNOWN_COUNT\n") != 0)
+            strcmp(text, "NEVH__KNOWN_COUNT\n") != 0 &&
+            strcmp(text, "NEVH__UNROLLED\n") != 0)
             write_line(w, *lines);
     }
 }

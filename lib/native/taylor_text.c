@@ -65,12 +65,13 @@ static void write_call(const author *a, const nevh__batch *b, size_t y,
                        const char *x, const char *z) {
     const char *name =
         b->function == NEVH__NOTHING ? NULL : nevh__operation_name(b->function);
-    if (!name)
+    if (!name) {
         nevh__write(a->text, "v%zu = 0;\n", y);
-    else if (b->arity > 1)
-        nevh__write(a->text, "v%zu = __builtin_%s(%s, %s);\n", y, name, x, z);
-    else
-        nevh__write(a->text, "v%zu = __builtin_%s(%s);\n", y, name, x);
+        return;
+    }
+    const char *before = nevh__write_elementary(a->text, NULL, name);
+    nevh__write(a->text, "v%zu = %s%s(%s%s%s);\n", y, before, name, x,
+                b->arity > 1 ? ", " : "", b->arity > 1 ? z : "");
 }
 
 static void write_power(const author *a, size_t y, const char *x,
@@ -82,8 +83,8 @@ static void write_power(const author *a, size_t y, const char *x,
     else if (exponent == -0.5)
         nevh__write(a->text, "v%zu = 1 / __builtin_sqrt(%s);\n", y, x);
     else
-        nevh__write(a->text, "v%zu = __builtin_pow(%s, N[%zu]);\n", y, x,
-                    number);
+        nevh__write(a->text, "v%zu = %spow(%s, N[%zu]);\n", y,
+                    nevh__write_elementary(a->text, NULL, "pow"), x, number);
     nevh__write(a->text, "const double e%zu = 1 / %s;\n", y, x);
 }
 

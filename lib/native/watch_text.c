@@ -42,12 +42,10 @@ static bool write_formulas(nevh__writer *w) {
 }
 
 /* As nevh_field_value adds them. */
-static bool watch_text_write_term(nevh__writer *w, const nevh_field *field,
-                                  const nevh_term *is) {
+static bool watch_text_write_term(nevh__writer *w, const nevh_term *is) {
     place at = {is, nevh__writer_share(w, is->count * is->nc, is->c)};
     nevh__formula_text f = {.tape = is->params,
                             .lanes = &nevh__eight,
-                            .scalar = field->portable,
                             .variable = name_in_step,
                             .data = &at};
     for (; f.instance < is->count; f.instance++) {
@@ -66,7 +64,7 @@ static bool watch_text_write_term(nevh__writer *w, const nevh_field *field,
 static bool write_energy(nevh__writer *w, const nevh_field *field) {
     nevh__write(w, "    wide sum = {0}, lost = {0}, next;\n");
     for (size_t i = 0; i < field->n_terms; i++)
-        if (!watch_text_write_term(w, field, &field->terms[i].term->decl))
+        if (!watch_text_write_term(w, &field->terms[i].term->decl))
             return false;
     nevh__write(w, "    *(wide *)(to + %zu * WIDTH) = sum + lost;\n",
                 w->watched->count);

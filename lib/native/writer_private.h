@@ -10,6 +10,7 @@
 #include "expression/tape_private.h"
 #include "gradient/field_private.h"
 
+enum { NEVH__CALLERS = 3 };
 enum { NEVH__NAME = 40, NEVH__MOST_SHARED = 32, NEVH__MOST_FORMS = 16 };
 
 /* Numbers that stand in the table once, and where. */
@@ -49,15 +50,18 @@ typedef struct {
     const struct nevh__watched
         *watched;            /* what is found of each state; or NULL */
     const nevh_field *field; /* for that */
-    bool readable; /* numbers stand in the text, functions are libm's */
+    bool readable;           /* numbers stand in the text */
     const char
         *forms[NEVH__MOST_FORMS]; /* for readers: names that are defined */
     size_t form_count;
     size_t n;
     char (*names)[NEVH__NAME]; /* of q, and of p, in a text for readers; "": it
                                   has none that C takes */
-    bool failed;               /* memory is out */
-    const char *refusal;       /* why there is no text; NULL: there is */
+    unsigned
+        calls[NEVH__CALLERS]; /* elementary functions: bits, of one number, of
+                                      four and of eight */
+    bool failed;              /* memory is out */
+    const char *refusal;      /* why there is no text; NULL: there is */
 } nevh__writer;
 
 void nevh__write(nevh__writer *, const char *format, ...)
@@ -148,6 +152,10 @@ extern const char *const nevh__compiled_needs_text[];
 extern const char *const nevh__program_needs_text[];
 extern const char *const nevh__program_main_text[];
 extern const char *const nevh__formula_needs_text[];
+extern const char *const nevh__elementary_number_text[];
+extern const char *const nevh__elementary_text_text[];
+extern const char *const nevh__elementary_edges_text[];
+extern const char *const nevh__elementary_lanes_text[];
 extern const char *const nevh__compiled_formulas_text[];
 extern const char *const nevh__loop_needs_text[];
 extern const char *const nevh__series_sums_text[];
@@ -166,7 +174,6 @@ extern const nevh__lane_words nevh__eight, nevh__four;
 typedef struct nevh__formula_text {
     const nevh__tape *tape;
     const nevh__lane_words *lanes; /* NULL: one point */
-    bool scalar;                   /* functions of libm, not of vectors */
     /* Names a variable. */
     void (*variable)(nevh__writer *, const struct nevh__formula_text *,
                      nevh__variable, size_t k, char name[NEVH__NAME]);
@@ -195,8 +202,15 @@ bool nevh__write_complex(nevh__writer *, nevh__formula_text *,
 void nevh__derivative_name(const nevh__formula_text *, nevh__variable, size_t k,
                            char name[NEVH__NAME]);
 
-/* Writes what formulas need before them. */
-void nevh__write_prelude(nevh__writer *);
+/* Writes what formulas need before them: elementary functions, as far as `text` calls
+   them. */
+void nevh__write_prelude(nevh__writer *, const nevh__writer *text);
+void nevh__write_elementary_numbers(nevh__writer *, const nevh__writer *text);
+/* "nevh__one_" or the like: what the name of an elementary function begins with;
+   notes that the text calls it.  lanes: NULL for one number */
+const char *nevh__write_elementary(nevh__writer *,
+                                   const nevh__lane_words *lanes,
+                                   const char *function);
 
 /* After w->group was chosen: what kernels' texts need; finite: nevh__not_finite, sums: stage_sums.  DOF is the
    numbers of a half of a step's state. */

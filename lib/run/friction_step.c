@@ -12,6 +12,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/stepper_private.h"
 #include "work/ledger_private.h"
+#include <nevh/simd.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -84,15 +85,17 @@ void nevh__friction_step_free(struct nevh__friction_step *d) {
     free(d);
 }
 
-/* Near 1 the two parts hold what expm1 knows beyond the last bit of exp. */
+/* Near 1 the two parts hold what exp(x) - 1 = 2 sinh(x/2) exp(x/2) knows beyond the
+   last bit of exp. */
 static void set_factors(const nevh_stepper *s, double h) {
     struct nevh__friction_step *d = s->friction;
     if (d->h == h)
         return;
     for (size_t k = 0; k < s->work.n; k++) {
-        double change = expm1(-s->rates[k] * h / 2);
+        double x = -s->rates[k] * h / 2;
+        double change = 2 * nevh_simd_sinh(x / 2) * nevh_simd_exp(x / 2);
         bool near = fabs(change) <= 0.5;
-        d->factor[k] = near ? 1 + change : exp(-s->rates[k] * h / 2);
+        d->factor[k] = near ? 1 + change : nevh_simd_exp(x);
         d->remainder[k] = near ? change - (d->factor[k] - 1) : 0;
     }
     d->h = h;

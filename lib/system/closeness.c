@@ -3,6 +3,7 @@
 
    Both are powers of a sum over a term's coordinates; the constants of the
    instance say which: the power, and the coordinates of a body. */
+#include <nevh/simd.h>
 #include <math.h>
 #include <nevh/transform.h>
 #include <stdint.h>
@@ -20,7 +21,7 @@ static void distance_block(size_t width, const double t[], const double q[],
     (void)t, (void)p, (void)params;
     for (size_t i = 0; i < width; i++) {
         size_t count = (size_t)c[width + i];
-        h[i] = pow(distance_squared(width, q + i, count), c[i] / 2);
+        h[i] = nevh_simd_pow(distance_squared(width, q + i, count), c[i] / 2);
     }
 }
 
@@ -31,7 +32,7 @@ static void distance_gradient(size_t width, const double t[], const double q[],
     for (size_t i = 0; dq && i < width; i++) {
         size_t count = (size_t)c[width + i];
         double sum = distance_squared(width, q + i, count);
-        double slope = c[i] * pow(sum, c[i] / 2 - 1);
+        double slope = c[i] * nevh_simd_pow(sum, c[i] / 2 - 1);
         for (size_t k = 0; k < count; k++)
             dq[k * width + i] = slope * q[k * width + i];
     }
@@ -86,7 +87,7 @@ static void closeness_block(size_t width, const double t[], const double q[],
     (void)t, (void)p, (void)params;
     for (size_t i = 0; i < width; i++) {
         column b = column_at(width, q, c, i);
-        h[i] = pow(closeness_closeness(&b), -c[i] / 2);
+        h[i] = nevh_simd_pow(closeness_closeness(&b), -c[i] / 2);
     }
 }
 
@@ -109,7 +110,8 @@ static void closeness_gradient(size_t width, const double t[], const double q[],
     (void)t, (void)p, (void)params, (void)dp;
     for (size_t i = 0; dq && i < width; i++) {
         column b = column_at(width, q, c, i);
-        double slope = -c[i] / 2 * pow(closeness_closeness(&b), -c[i] / 2 - 1);
+        double slope =
+            -c[i] / 2 * nevh_simd_pow(closeness_closeness(&b), -c[i] / 2 - 1);
         for (size_t k = 0; k < b.bodies * b.dimensions; k++)
             dq[k * width + i] = 0;
         for (size_t j = 0; j < b.bodies; j++)

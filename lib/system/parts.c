@@ -171,7 +171,7 @@ static void take_values(const trial *x, double distance[]) {
         distance[lane] = 0;
         for (size_t k = 0; k < x->nv; k++)
             distance[lane] =
-                hypot(distance[lane], x->z[k * NEVH__LANES + lane]);
+                nevh_simd_hypot(distance[lane], x->z[k * NEVH__LANES + lane]);
     }
 }
 

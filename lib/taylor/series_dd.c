@@ -7,9 +7,10 @@
 
 typedef nevh__wide real;
 typedef double stored;
-#define NAMED(name) name##_dd
-#define FUNCTION(f) f##q
-#define ROWS        2
+#define NAMED(name)     name##_dd
+#define FUNCTION(f)     f##q
+#define ROUNDED_DOWN(x) floorq(x)
+#define ROWS            2
 #define DOUBLE_DOUBLE
 #define VECTORS NEVH_SIMD
 #include "taylor/series_text.h"

@@ -4,10 +4,11 @@
 
 typedef double real;
 typedef double stored;
-#define NAMED(name) name##_double
-#define FUNCTION(f) f
-#define ROWS        1
-#define VECTORS     NEVH_SIMD
+#define NAMED(name)     name##_double
+#define FUNCTION(f)     nevh_simd_##f
+#define ROUNDED_DOWN(x) floor(x)
+#define ROWS            1
+#define VECTORS         NEVH_SIMD
 #include "taylor/series_text.h"
 
 NEVH__INLINE void store(series *s, size_t k) {

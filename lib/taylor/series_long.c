@@ -5,9 +5,10 @@
 
 typedef long double real;
 typedef long double stored;
-#define NAMED(name) name##_long
-#define FUNCTION(f) f##l
-#define ROWS        1
+#define NAMED(name)     name##_long
+#define FUNCTION(f)     f##l
+#define ROUNDED_DOWN(x) floorl(x)
+#define ROWS            1
 #define VECTORS
 #include "taylor/series_text.h"
 

@@ -10,9 +10,10 @@
 
 typedef nevh__wide real;
 typedef double stored;
-#define NAMED(name) name##_quad
-#define FUNCTION(f) f##q
-#define ROWS        2
+#define NAMED(name)     name##_quad
+#define FUNCTION(f)     f##q
+#define ROUNDED_DOWN(x) floorq(x)
+#define ROWS            2
 #define VECTORS
 #include "taylor/series_text.h"
 

@@ -2,7 +2,7 @@
 
    Before this is included are defined: real, of which states are, and DOUBLE_DOUBLE
    where coefficients are not; stored, what rows are of; NAMED(name), the name of
-   a function; FUNCTION(f), a function of theirs as <math.h> has it; ROWS, numbers
+   a function; FUNCTION(f), an elementary function of theirs; ROUNDED_DOWN(x); ROWS, numbers
    that a lane's operand takes in a row.  After it: how operands are stored in
    rows (store), and the inner sums of all lanes (add_up).
    SPDX-License-Identifier: GPL-3.0-or-later */
@@ -151,7 +151,7 @@ static real function(const nevh__batch *batch, real a, real b) {
     case NEVH__SIGN:
         return (real)((a > 0) - (a < 0));
     case NEVH__FLOOR:
-        return FUNCTION(floor)(a);
+        return ROUNDED_DOWN(a);
     default: /* NEVH__NOTHING */
         return 0;
     }

@@ -129,7 +129,8 @@ while read -r compiler; do
         # shellcheck disable=SC2086
         if has_vectors $compiler -O2 $SANITIZE_FLAGS $flag; then
             tried="$tried $compiler $flag;"
-            for name in _ZGVbN2v_sin _ZGVdN4v_cos _ZGVeN8v_sin; do
+            for name in _ZGVbN2v_nevh_simd_sin _ZGVdN4v_nevh_simd_cos \
+                _ZGVeN8v_nevh_simd_sin; do
                 ${NM:-nm} "$dest/outside" | grep -q $name ||
                     fails "$compiler $flag: nothing calls $name"
             done

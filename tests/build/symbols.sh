@@ -68,7 +68,7 @@ $nm --version >/dev/null 2>&1 || { echo "there is no nm"; exit 77; }
 case $lib in
 *.so) $nm -D --defined-only $lib | awk '{ print $NF }' ;;
 *) $nm -g $lib | awk '$2 != "U" && NF == 3 { sub(/^_/, "", $3); print $3 }' ;;
-esac | sed 's/@.*//' |
+esac | sed 's/@.*//; s/^_ZGV[b-e]N[248]vv*_//' |
     grep -Ev '^(__odr_asan.*|_init|_fini|__bss_start|_edata|_end)$' |
     sort -u >$work/defined
 

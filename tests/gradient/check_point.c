@@ -64,7 +64,7 @@ typedef struct {
     int turns;
 } parameters;
 
-/* What is the same in all lanes is not to be taken from libm either. */
+/* Arguments that are the same in all lanes. */
 NEVH_GRADIENT(of_params, parameters, {
     nevh_dh_dq(0) = nevh_sin(0.37 * params->turns) * nevh_q(0);
     nevh_dh_dp(0) = nevh_exp(params->weights[0]) *
@@ -177,26 +177,6 @@ TEST_EACH(point_is_block, FUNCTIONS) {
     }
 }
 
-/* In vectors some bits are not those of libm, or there would be nothing to be
-   tested. */
-TEST(bits_are_at_stake) {
-    size_t unlike[3] = {0, 0, 0};
-    for (int state = 0; state < STATES; state++) {
-        double x = uniform(-20, 20), d;
-        of_sin_point_gradient(0, &x, NULL, NULL, NULL, &d, NULL);
-        unlike[0] += !same(d, sin(x));
-        of_cos_point_gradient(0, &x, NULL, NULL, NULL, &d, NULL);
-        unlike[1] += !same(d, cos(x));
-        of_exp_point_gradient(0, &x, NULL, NULL, NULL, &d, NULL);
-        unlike[2] += !same(d, exp(x));
-    }
-#ifdef NEVH__VECTORS
-    ck_assert(unlike[0] + unlike[1] + unlike[2] > 0);
-#else
-    ck_assert(unlike[0] + unlike[1] + unlike[2] == 0);
-#endif
-}
-
 /* Point gradients of q0 sin(q1) + p0^2, of which only the first is right. */
 NEVH_BODY(right, void,
           { return nevh_q(0) * nevh_sin(nevh_q(1)) + nevh_p(0) * nevh_p(0); })
@@ -251,14 +231,12 @@ POINT(nothing) {
     (void)t, (void)q, (void)p, (void)c, (void)params, (void)dq, (void)dp;
 }
 
-#ifdef NEVH__VECTORS
-/* Only that sine is libm's own: in nearly all states it is the same. */
+/* Only that sine is libm's: in nearly all states it is the same. */
 POINT(other_sine) {
     right_point_gradient(t, q, p, c, params, dq, dp);
     if (dq)
         dq[0] = sin(q[1]);
 }
-#endif
 
 static const struct {
     nevh_point_gradient_fn point;
@@ -266,11 +244,7 @@ static const struct {
 } points[] = {{right_point_gradient, NULL}, {off_by_a_bit, "q[1] is "},
               {off_alone, "p[0] is "},      {wrong_half, "q[0] is "},
               {nothing, "q[0] is nan"},     {seldom_off, "q[0] is "},
-              {late, "p[0] is "},
-#ifdef NEVH__VECTORS
-              {other_sine, "q[0] is "}
-#endif
-};
+              {late, "p[0] is "},           {other_sine, "q[0] is "}};
 enum { POINTS = sizeof points / sizeof *points };
 
 TEST_EACH(unlike_points_are_refused, POINTS) {

@@ -3,6 +3,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #define _GNU_SOURCE
 #include "../support/native.h"
+#include "elementary/elementary_list.h"
 #include "kernels/adaptive_verlet_private.h"
 #include "kernels/form_flow_private.h"
 #include "kernels/tao_private.h"
@@ -406,39 +407,92 @@ TEST(chain_rule) {
     nevh_scene_free(scene);
 }
 
-/* One number goes by fewer lanes than many, where that is the same algorithm: any
-   range, beyond the first reduction of arguments, too. */
-TEST(lanes_alike) {
-    static const char text[] =
-        "int nevh_native_steps;\n"
-        "int compare(double from, double step, size count) {\n"
-        "    for (size i = 0; i < count; i++) {\n"
-        "        double x = from + (double)i * step;\n"
-        "        wide s = wide_sin(ALL(x)), c = wide_cos(ALL(x));\n"
-        "        if (lane_sin(x) != s[0] || lane_sin(-x) != -s[0] ||\n"
-        "            lane_cos(x) != c[0])\n"
-        "            return 1;\n"
-        "    }\n"
-        "    return 0;\n}\n";
-    static const double ranges[][2] = {{0, 1e-4},     {1e-12, 1e-16},
-                                       {20, 0.0123},  {1e4, 0.777},
-                                       {1e7, 1234.5}, {1e15, 1e9}};
+/* Elementary functions of the text have the library's bits, of one number, of four and
+   of eight. */
+typedef struct {
+    const char *name;
+    double (*one)(double), (*two)(double, double);
+} elementary;
+
+static double drawn(double most) {
+    double x = exp((rand() / (RAND_MAX + 1.0) - 0.5) * 2 * log(most));
+    return rand() % 2 ? x : -x;
+}
+
+static void compare_elementary(const elementary *f, void *library) {
+    enum { SIDE = 8, DRAWS = 5000 };
+    static const double special[] = {0,   -0.,       INFINITY, -INFINITY,
+                                     NAN, 0x1p-1074, 1,        -1};
+    void (*take)(const double *, const double *, double *);
+    double x[SIDE], y[SIDE], z[3 * SIDE];
+    *(void **)&take = dlsym(library, f->name);
+    ck_assert(take);
+    for (int k = 0; k < DRAWS; k++) {
+        double most = k % 4 ? k % 4 == 1 ? 1e3 : 10 : 1e300;
+        for (int i = 0; i < SIDE; i++) {
+            x[i] = k < SIDE ? special[i] : drawn(most);
+            y[i] = k < SIDE ? special[(i + k) % SIDE] : drawn(most);
+        }
+        take(x, y, z);
+        for (int i = 0; i < 3 * SIDE; i++) {
+            double a = x[i % SIDE], b = y[i % SIDE];
+            double want = f->one ? f->one(a) : f->two(a, b);
+            ck_assert_msg((isnan(want) && isnan(z[i])) ||
+                              !memcmp(&want, &z[i], sizeof want),
+                          "%s(%.17g, %.17g): %.17g, by way %d %.17g", f->name,
+                          a, b, want, i / SIDE, z[i]);
+        }
+    }
+}
+
+/* Types, what functions begin with, how many numbers, and where results begin. */
+static const char *const ways_of_lanes[][4] = {
+    {"double", "nevh__one_", "1", "0"},
+    {"few", "few_", "4", "8"},
+    {"wide", "wide_", "8", "16"}};
+
+TEST(elementary_same_bits) {
+#define ONE(name, f, family) {"take_" #f, nevh_simd_##name, NULL},
+#define TWO(name, f, family) {"take_" #f, NULL, nevh_simd_##name},
+    const elementary tried[] = {NEVH__EACH_ONE(ONE) NEVH__EACH_TWO(TWO)};
+#undef ONE
+#undef TWO
+    const size_t count = sizeof tried / sizeof *tried;
     char why[NEVH__WHY_NATIVE] = "";
     if (!has_compiler())
         skip_test("there is no C compiler");
-    nevh__writer w = {.width = 1};
-    int (*compare)(double, double, size_t);
-    nevh__write_prelude(&w);
-    nevh__write(&w, "%s", text);
-    void *library = nevh__native_load(w.text, "", true, why);
+    nevh__writer steps = {.width = 1}, all = {.width = 1};
+    nevh__write(&steps, "int nevh_native_steps;\n");
+    for (size_t i = 0; i < count; i++) {
+        const char *name = tried[i].name + strlen("take_");
+        bool two = tried[i].two;
+        nevh__write_elementary(&steps, &nevh__four, name);
+        nevh__write_elementary(&steps, &nevh__eight, name);
+        nevh__write(&steps,
+                    "void take_%s(const double *x, const double *y, "
+                    "double *z) {\n(void)y;\n",
+                    name);
+        for (int way = 0; way < 3; way++)
+            nevh__write_filled(
+                &steps,
+                two ? "for (int i = 0; i < 8; i += $4) *($1 *)(z + $5 + i) = "
+                      "$2$3(*(const $1 *)(x + i), *(const $1 *)(y + i));\n"
+                    : "for (int i = 0; i < 8; i += $4) *($1 *)(z + $5 + i) = "
+                      "$2$3(*(const $1 *)(x + i));\n",
+                (const char *const[]){
+                    ways_of_lanes[way][0], ways_of_lanes[way][1], name,
+                    ways_of_lanes[way][2], ways_of_lanes[way][3]});
+        nevh__write(&steps, "}\n");
+    }
+    nevh__write_prelude(&all, &steps);
+    nevh__write(&all, "%s", steps.text);
+    void *library = nevh__native_load(all.text, "", true, why);
     ck_assert_msg(library, "%s", why);
-    *(void **)&compare = dlsym(library, "compare");
-    ck_assert(compare);
-    for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
-        ck_assert_msg(!compare(ranges[i][0], ranges[i][1], 200000), "beyond %g",
-                      ranges[i][0]);
+    for (size_t i = 0; i < count; i++)
+        compare_elementary(&tried[i], library);
     dlclose(library);
-    nevh__writer_free(&w);
+    nevh__writer_free(&steps);
+    nevh__writer_free(&all);
 }
 
 /* Sweeps that do not get on are left to the kernel, and so are steps that

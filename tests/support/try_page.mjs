@@ -36,9 +36,6 @@ const fits = async (page, name) => {
     return [at("states").scrollWidth, at("states").parentElement.clientWidth]; })()`);
   check(needed <= given, `${name}: the table has ${needed} pixels in ${given}`);
 };
-// Twelve digits: the C libraries' functions differ in the last.
-const near = (a, b, size) => Math.abs(a - b) <= 1e-12 * Math.max(1, size);
-
 async function digits(scene, schemes, dt, columns) {
   await tried(scene, `test=100&dt=${dt}&integrators=${schemes.join(",")}`,
     async (page) => {
@@ -49,10 +46,10 @@ async function digits(scene, schemes, dt, columns) {
           .trim().split(",").map(Number);
         const state = run.state.map(Number);
         check(run.scheme === schemes[i], scene + ": schemes");
-        check(near(+run.t, line[0], 1), `${scene}: t ${run.t} for ${line[0]}`);
-        state.forEach((v, j) => check(near(v, line[1 + j], Math.abs(v)),
+        check(+run.t === line[0], `${scene}: t ${run.t} for ${line[0]}`);
+        state.forEach((v, j) => check(v === line[1 + j],
           `${scene} ${run.scheme}: ${v} for ${line[1 + j]}`));
-        check(near(+run.energy, line[line.length - 1], Math.abs(run.energy)),
+        check(+run.energy === line[line.length - 1],
           `${scene} ${run.scheme}: energy ${run.energy} for ${line[line.length - 1]}`);
       });
     });

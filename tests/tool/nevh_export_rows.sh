@@ -1,7 +1,7 @@
 #!/bin/sh
 # Programs that nevh export writes, of all schemes that have one: they compile
 # without a warning under gcc and clang, and their energy row has the digits of
-# nevh compare --portable.  make check takes a scheme or two of each family,
+# nevh compare.  make check takes a scheme or two of each family,
 # SLOW=yes all of them.
 
 . "${srcdir:-.}/tests/support/nevh_support.sh"
@@ -33,7 +33,7 @@ agrees() {
     shift 5
     exits 0 export $run -o $work/prog.c
     test $code = 0 || return
-    exits 0 compare $run --portable --native never --format csv --quiet
+    exits 0 compare $run --native never --format csv --quiet
     columns <$work/out >$work/expected
     test $(wc -l <$work/expected) = 1 || { fails 'prints no row'; return; }
     for cc; do

@@ -11,6 +11,7 @@ static void (*const give_back)(void *) = free;
 typedef struct block block;
 struct block {
     _Alignas(max_align_t) block *older, *newer;
+    size_t bytes; /* behind it */
 };
 static block *newest;
 /* Members run in threads. */
@@ -46,11 +47,13 @@ double tool_number(double number) {
 static size_t bytes_of(size_t count, size_t size) {
     if (size && count > (SIZE_MAX - sizeof(block)) / size)
         tool_owned(NULL);
-    return sizeof(block) + count * size;
+    return count * size;
 }
 
 void *tool_allocate(size_t count, size_t size) {
-    block *b = tool_owned(calloc(1, bytes_of(count, size)));
+    size_t bytes = bytes_of(count, size);
+    block *b = tool_owned(calloc(1, sizeof *b + bytes));
+    b->bytes = bytes;
     pthread_mutex_lock(&lock);
     b->older = newest;
     relink(b, b, b);
@@ -61,17 +64,21 @@ void *tool_allocate(size_t count, size_t size) {
 void *tool_enlarge(void *memory, size_t count, size_t size) {
     if (!memory)
         return tool_allocate(count, size);
+    size_t bytes = bytes_of(count, size);
     pthread_mutex_lock(&lock);
-    block *b = realloc((block *)memory - 1, bytes_of(count, size));
-    if (b)
+    block *b = realloc((block *)memory - 1, sizeof *b + bytes);
+    if (b) {
+        b->bytes = bytes;
         relink(b, b, b);
+    }
     pthread_mutex_unlock(&lock);
     return (block *)tool_owned(b) + 1;
 }
 
 void *tool_grown(void *items, size_t count, size_t size) {
-    bool full = (count & (count - 1)) == 0;
-    return full ? tool_enlarge(items, count ? 2 * count : 1, size) : items;
+    size_t room = items ? ((block *)items - 1)->bytes / size : 0;
+    return count < room ? items
+                        : tool_enlarge(items, count ? 2 * count : 1, size);
 }
 
 void tool_release(void *memory) {

@@ -132,7 +132,7 @@ const option_row option_rows[] = {
      "symplecticity, reversal, solvers, invariants, energies by effect and "
      "body"},
     {"portable", NULL, FLAG(portable), "STEPS",
-     "no vector code: the same digits with the same libm"},
+     "terms in C state by state, not as vector code"},
     {"native", "auto|never|always", CHOICE(nevh_native_use, native.use),
      "NATIVE", "compile steps of formulas; auto (default): if that saves time",
      .words = "auto|always|never"},

@@ -197,7 +197,6 @@ static bool is_flat(const plan *p, nevh_probe *probe, nevh_field *exact) {
     const double *lengths = flat ? nevh_probe_lengths(probe) : NULL;
     for (size_t k = 0; flat && k < 2 * p->n; k++)
         flat = fabs(slope[k]) * lengths[k] <= rounding * scale;
-    free(slope);
     return flat;
 }
 

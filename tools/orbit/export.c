@@ -37,7 +37,6 @@ static int export_plan(const options *o, const plan *p) {
 static int export_scene(const options *o) {
     plan p = {0};
     int status = plan_make(&p, o);
-    p.portable = true; /* differences, too, are found from libm's values */
     if (!status && !(p.dts && p.dt[0] > 0 && isfinite(p.t_end)))
         status = tool_refuse("a program takes steps of dt up to t_end: give "
                              "both");

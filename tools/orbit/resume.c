@@ -102,43 +102,6 @@ static bool is_whole(const char *all, size_t size) {
            digest_add(digest_begin(), all, size - sizeof digest) == digest;
 }
 
-enum { ARGUMENTS = 512, FUNCTIONS = 5 };
-
-NEVH_SIMD static void take_vectors(const double x[], double y[]) {
-    NEVH_LANES(i, ARGUMENTS) {
-        y[i] = nevh_simd_sin(x[i]);
-        y[i + ARGUMENTS] = nevh_simd_cos(x[i]);
-        y[i + 2 * ARGUMENTS] = nevh_simd_exp(x[i]);
-        y[i + 3 * ARGUMENTS] = nevh_simd_log(x[i]);
-        y[i + 4 * ARGUMENTS] = nevh_simd_pow(x[i], 1.3);
-    }
-}
-
-static void take_numbers(const double x[], double y[]) {
-    for (size_t i = 0; i < ARGUMENTS; i++) {
-        y[i] = sin(x[i]);
-        y[i + ARGUMENTS] = cos(x[i]);
-        y[i + 2 * ARGUMENTS] = exp(x[i]);
-        y[i + 3 * ARGUMENTS] = log(x[i]);
-        y[i + 4 * ARGUMENTS] = pow(x[i], 1.3);
-    }
-}
-
-uint64_t state_digits(bool portable) {
-    double *x = tool_allocate((1 + FUNCTIONS) * ARGUMENTS, sizeof *x);
-    double *y = x + ARGUMENTS;
-    size_t bytes = FUNCTIONS * ARGUMENTS * sizeof *y;
-    for (size_t i = 0; i < ARGUMENTS; i++)
-        x[i] = 0.013 + 0.37 * (double)i;
-    take_numbers(x, y);
-    uint64_t digest = digest_add(digest_begin(), y, bytes);
-    if (!portable) {
-        take_vectors(x, y);
-        digest = digest_add(digest, y, bytes);
-    }
-    return digest;
-}
-
 /* Settings are lines NAME = VALUE, in the same order: the first that differs.
    returns  TOOL_OK when none does */
 static int compare_settings(const char *name, const char *saved,
@@ -151,11 +114,6 @@ static int compare_settings(const char *name, const char *saved,
         } else if (strncmp(now, "scene", 5) == 0) {
             return tool_refuse("%s belongs to another scene, or to other "
                                "parameters, effects or code",
-                               name);
-        } else if (strncmp(now, "digits", 6) == 0) {
-            return tool_refuse("%s comes from a machine whose vector units or "
-                               "libm give other last digits: resume it there, "
-                               "or start a new run here",
                                name);
         } else {
             return tool_refuse("%s belongs to a run with %.*s, not %.*s", name,

@@ -162,13 +162,12 @@ static char *describe(const run_job *j) {
         "nevh = %s\nscene = %016llx\nintegrator = %s\ndt = %.17g\n"
         "t_end = %.17g\ngradient = %s\ngradient step = %.17g\n"
         "tolerance = %.17g\nportable = %s\ntransform = %s\n"
-        "digits = %016llx\nrows = %s%s\n",
+        "rows = %s%s\n",
         PACKAGE_VERSION, (unsigned long long)nevh_scene_digest(p->scene),
         j->integrator, p->dt[0], p->t_end, p->gradients.item[0],
         p->gradient_step, p->tolerances ? p->tolerance[0] : 0,
         p->portable ? "yes" : "no",
-        p->run->transform ? p->run->transform : "none",
-        (unsigned long long)state_digits(p->portable), j->rows_text, times);
+        p->run->transform ? p->run->transform : "none", j->rows_text, times);
 }
 
 /* Saving. */

@@ -58,9 +58,6 @@ int state_save(const char *name, const char *settings, const run_state *,
 /* Reads into arrays of the sizes that are given.  A file that is not whole, or
    of other settings, is refused with a message. */
 int state_load(const char *name, const char *settings, run_state *);
-/* A digest of what functions like sine give here, to the last bit: it differs
-   where the vector units do, or libm. */
-uint64_t state_digits(bool portable);
 void state_remove(const char *name);
 
 /* trajectory.c: an orbit, and its rows. */

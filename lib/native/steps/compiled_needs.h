@@ -12,12 +12,6 @@
 #define NEVH_UNROLL _Pragma("GCC unroll 16")
 #endif
 
-typedef size size_t;
-#define bool _Bool
-#define true 1
-#define false 0
-#define NULL              ((void *)0)
-#define INFINITY          __builtin_inf()
 #define NEVH__KNOWN_COUNT NEVH_UNROLL
 #define NEVH__EACH(i, lanes, size)                                             \
     NEVH_UNROLL for (size_t i = 0; i < (size); i += (lanes))
