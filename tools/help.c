@@ -135,9 +135,8 @@ static void print_parts(const char *name, const char *before, const char *text,
     printf("%s%s", name, text ? "[" : "null");
     if (text)
         list_split_at(&parts, text, mark);
-    for (size_t i = 0; i < parts.count; i++) {
+    for (size_t i = 0; i < parts.count; i++)
         print_member(i ? ", " : "", text_print("%s%s", before, parts.item[i]));
-    }
     fputs(text ? "]" : "", stdout);
 }
 

@@ -198,10 +198,9 @@ int read_choice(options *o, const option_row *row, const char *argument) {
     list_split_at(&words, row->words, '|');
     while (i < words.count && strcmp(argument, words.item[i]) != 0)
         i++;
-    if (i == words.count) {
+    if (i == words.count)
         status = tool_refuse("--%s is %s, not \"%s\"", row->name,
                              list_sentence(&words, "or"), argument);
-    }
     i += row->first;
     memcpy(target(o, row), &i, sizeof i);
     return status;

@@ -42,9 +42,8 @@ static int list_integrators(table *t, const options *o) {
     table_titles(t, "order,sym-\nplectic,sym-\nmetric,ex-\nplicit,"
                     "energy\nkept,adap-\ntive,gra-\ndients,needs H =");
     table_break(t);
-    if (o->all) {
+    if (o->all)
         table_titles(t, "native,elsewhere,source");
-    }
     for (size_t i = 0; nevh_integrators()[i]; i++)
         add_integrator(t, nevh_integrators()[i], o->all);
     return TOOL_OK;

@@ -1,11 +1,13 @@
 /* nevh: memory of the command, all of which goes when the program ends.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include <stdlib.h>
+/* Before tool.h, which hides free from the rest of the command. */
 static void (*const give_back)(void *) = free;
 #include "tool.h"
 #include <math.h>
 #include <pthread.h>
 #include <stddef.h>
+#include <string.h>
 
 /* Before each piece of memory; all of them are a list, the newest first. */
 typedef struct block block;
@@ -17,7 +19,7 @@ static block *newest;
 /* Members run in threads. */
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
-/* Says to those beside a block in the list what stands there now. */
+/* Sets the links of a block's neighbours. */
 static void relink(const block *b, block *older_has, block *newer_has) {
     if (b->older)
         b->older->newer = older_has;
@@ -96,10 +98,16 @@ void tool_release_all(void) {
         tool_release(newest + 1);
 }
 
-char *text_adopt(char *text) {
-    char *copy = text ? text_print("%s", text) : NULL;
+/* Moves a text of libc to the list. */
+static char *moved(char *text, size_t length) {
+    char *copy = tool_allocate(length + 1, 1);
+    memcpy(copy, text, length);
     give_back(text);
     return copy;
+}
+
+char *text_adopt(char *text) {
+    return text ? moved(text, strlen(text)) : NULL;
 }
 
 FILE *text_open(text_file *t) {
@@ -107,6 +115,7 @@ FILE *text_open(text_file *t) {
 }
 
 char *text_close(text_file *t) {
-    fclose(t->file);
-    return text_adopt(tool_owned(t->text));
+    if (fclose(t->file))
+        tool_owned(NULL);
+    return moved(tool_owned(t->text), t->size);
 }

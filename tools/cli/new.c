@@ -44,10 +44,9 @@ static char *file_of(const char *name) {
 static int make_file(const options *o, const char *file) {
     char *text = o->from ? text_from(o, file) : text_print("%s", scene_sample);
     int status = text ? write_new(file, text) : TOOL_USAGE;
-    if (!status && !o->quiet) {
+    if (!status && !o->quiet)
         printf("%s is made.   Next: %s\n", file,
                shell_word(text_print("nevh compare"), file));
-    }
     return status;
 }
 

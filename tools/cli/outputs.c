@@ -85,9 +85,8 @@ static void outputs_add_rows(outputs *all, const options *o, const char *option,
                              const char *file) {
     const char *ending = file ? ending_beside(o, file) : NULL;
     outputs_add(all, option, file);
-    if (ending) {
+    if (ending)
         outputs_add(all, option, text_print("%s%s", file, ending));
-    }
 }
 
 char *output_part(const char *file, uint64_t task, uint64_t tasks) {

@@ -58,12 +58,10 @@ static char *folder_beside(void) {
    the folder that belongs to this program (in the build tree or beside bin/), else
    the one it was configured for. */
 static const char *scenes_folder(void) {
-    static char *beside;
     const char *given = getenv("NEVH_SCENES");
     if (given && *given)
         return given;
-    if (!beside)
-        beside = folder_beside();
+    const char *beside = folder_beside();
     return beside ? beside : NEVH_SCENES;
 }
 
@@ -79,7 +77,8 @@ static int by_name(const void *a, const void *b) {
 
 void scenes_installed(list *names, list *files) {
     list found = {0};
-    DIR *folder = opendir(scenes_folder());
+    const char *path = scenes_folder();
+    DIR *folder = opendir(path);
     if (!folder && errno == ENOMEM)
         tool_owned(NULL);
     for (struct dirent *entry; folder && (entry = readdir(folder));)
@@ -94,7 +93,7 @@ void scenes_installed(list *names, list *files) {
         list_print(names, "%.*s", (int)(strlen(file) - sizeof ending + 1),
                    file);
         if (files)
-            list_print(files, "%s/%s", scenes_folder(), file);
+            list_print(files, "%s/%s", path, file);
     }
 }
 

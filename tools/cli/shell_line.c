@@ -20,7 +20,9 @@ static char *quoted(const char *word) {
 }
 
 char *shell_word(char *line, const char *word) {
-    text_extend(&line, " %s", quoted(word));
+    char *quotes = quoted(word);
+    text_extend(&line, " %s", quotes);
+    tool_release(quotes);
     return line;
 }
 

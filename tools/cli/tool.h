@@ -20,12 +20,13 @@
 #include <stdlib.h>
 #include <sys/types.h>
 
-/* memory.c: the command's memory is its own until the program ends, so that nobody
-   asks whose a text or a row is.  Where memory is out the program ends. */
+/* memory.c.  The command's memory lives until the program ends: no function frees
+   texts or rows.  Where memory is out the program ends. */
 void *tool_allocate(size_t count, size_t size);        /* zeros */
 void *tool_enlarge(void *, size_t count, size_t size); /* as realloc */
-/* An array with room for one after `count`, which doubles where it is enlarged. */
-void *tool_grown(void *, size_t count, size_t size);
+/* An array with room for one after `count`, which doubles where it is enlarged.
+   items  of tool_allocate, tool_enlarge or tool_grown; NULL: none yet */
+void *tool_grown(void *items, size_t count, size_t size);
 /* Frees sooner: what is made again at each step of something long.  NULL is allowed. */
 void tool_release(void *);
 void tool_release_all(void); /* for programs that run command after command */
@@ -142,7 +143,7 @@ double tool_number(double);
 #define nevh_system_from(...)                                                  \
     ((nevh_system *)tool_owned(nevh_system_from(__VA_ARGS__)))
 __attribute__((format(printf, 1, 2))) char *text_print(const char *format, ...);
-/* Appends to a text; NULL: an empty one. */
+/* Appends to a text, which may move; NULL: an empty one. */
 __attribute__((format(printf, 2, 3))) void text_extend(char **text,
                                                        const char *format, ...);
 /* The item that `name` may have been meant for; NULL when none is close. */

@@ -29,7 +29,10 @@ void text_extend(char **text, const char *format, ...) {
     va_start(arguments, format);
     char *more = print(format, arguments);
     va_end(arguments);
-    *text = text_print("%s%s", *text ? *text : "", more);
+    size_t before = *text ? strlen(*text) : 0, added = strlen(more) + 1;
+    *text = tool_enlarge(*text, before + added, 1);
+    memcpy(*text + before, more, added);
+    tool_release(more);
 }
 
 static void take(list *l, char *text) {
@@ -112,7 +115,9 @@ static size_t distance(const char *a, const char *b) {
             edits[j + 1] = least(replaced, least(last, edits[j]) + 1);
         }
     }
-    return edits[width];
+    last = edits[width];
+    tool_release(edits);
+    return last;
 }
 
 const char *list_closest(const list *l, const char *name) {

@@ -242,11 +242,10 @@ static plot *draw_line(map *m, const direction *d) {
         outcome[k] = value;
     }
     if (draw_measured(m, to, nevh_sweep_column(m->sweep, d->column),
-                      nevh_sweep_column(m->sweep, m->varied), "measured")) {
+                      nevh_sweep_column(m->sweep, m->varied), "measured"))
         to = NULL;
-    } else if (m->data.points) {
+    else if (m->data.points)
         take_rms(m, d, outcome);
-    }
     return to;
 }
 
@@ -272,9 +271,8 @@ static plot *draw_map(map *m, const direction d[2]) {
     span(&d[1], &low, &high);
     plot_span_y(to, low, high);
     if (draw_measured(m, to, nevh_sweep_column(m->sweep, d[0].column),
-                      nevh_sweep_column(m->sweep, d[1].column), NULL)) {
+                      nevh_sweep_column(m->sweep, d[1].column), NULL))
         to = NULL;
-    }
     return to;
 }
 

@@ -392,9 +392,8 @@ int store_finish(store *s) {
     char *text = read_side(s->place);
     char *lines = text ? strstr(text, reasons_begin) : NULL;
     int status = TOOL_OK;
-    if (lines) {
+    if (lines)
         status = write_side(s, sorted(s, lines + strlen(reasons_begin)));
-    }
     return !status && fsync(s->file) ? unwritten(s) : status;
 }
 

@@ -38,9 +38,8 @@ static char *python_text(const char *text) {
 
 char *store_header(store *s) {
     char *fields = text_print("%s", "('status', '|u1'), ('', '|V7')");
-    for (size_t i = 0; i < s->columns->count; i++) {
+    for (size_t i = 0; i < s->columns->count; i++)
         text_extend(&fields, ", (%s, '<f8')", python_text(s->columns->item[i]));
-    }
     char *text = text_print("{'descr': [%s], 'fortran_order': False, 'shape': "
                             "(%" PRIu64 ",), }",
                             fields, s->count);

@@ -44,9 +44,7 @@ static double *changes(const plan *p, double t_end, double tolerance) {
                 !plan_run(&trial, s, p->dt[0], observers, 2, &stopped);
     double *change = invariants_result(kept);
     nevh_stepper_free(s);
-    if (!good)
-        change = NULL;
-    return change;
+    return good ? change : NULL;
 }
 
 /* Measures the size of invariants at states near the start; out, `count`. A change

@@ -69,6 +69,7 @@ void diagnose_row(const plan *p, row *r) {
     nevh_reversal_defect(s, t, r->dt, steps, p->q, p->p, scale,
                          &r->reversal_error);
     row_stepper_keep(p, r, false, s);
+    tool_release(scale);
 }
 
 static const char *const names[] = {

@@ -150,11 +150,10 @@ static size_t worst(const double error[], size_t first, size_t end) {
 
 void energies_columns(table *t, const plan *p, bool is_table) {
     const energies *s = p->energies;
-    for (size_t i = 0; s && i < s->effects; i++) {
+    for (size_t i = 0; s && i < s->effects; i++)
         table_column(t,
                      text_print(is_table ? "energy of\n%s" : "energy_error_%s",
                                 s->name[i]));
-    }
     if (s && s->bodies) {
         table_column(t, is_table ? "energy of\na body" : "body_energy_error");
         table_column(t, is_table ? "which\nbody" : "worst_body");

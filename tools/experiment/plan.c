@@ -227,10 +227,9 @@ char *plan_title(const nevh_scene *scene, const char *name, const options *o) {
     const char *own = nevh_scene_title(scene);
     char *title = text_print("%s", *own ? own : name);
     size_t changes = 0;
-    for (size_t i = 0; i < o->settings.count; i++) {
+    for (size_t i = 0; i < o->settings.count; i++)
         text_extend(&title, "%s%s", changes++ ? ", " : ", but ",
                     change_of(o->settings.item[i]));
-    }
     for (size_t i = 0; i < o->vary.count; i++) {
         const char *text = o->vary.item[i];
         bool one = text[strcspn(text, ",(:")] == '\0';

@@ -49,11 +49,12 @@ void plan_native_report(const nevh_stepper *s) {
 }
 
 void plan_why_report(const char *why) {
-    static char *reported;
-    if (!*why || (reported && strcmp(reported, why) == 0))
+    static uint64_t reported; /* digest of the last */
+    uint64_t digest = digest_add(digest_begin(), why, strlen(why));
+    if (!*why || digest == reported)
         return;
     fprintf(stderr, "nevh: steps are not compiled: %s\n", why);
-    reported = text_print("%s", why);
+    reported = digest;
 }
 
 const nevh_system *plan_transform(const plan *p, const char *name) {

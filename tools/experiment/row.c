@@ -202,6 +202,7 @@ static void set_status(const plan *p, row *r, int status, const char *why,
     r->status =
         status ? text_print("failed: %s (after t = %.9g)", ends ? ends : why, t)
                : text_print("ok");
+    tool_release(ends);
 }
 
 /* Results of the observers, which go. */

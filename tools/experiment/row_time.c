@@ -26,6 +26,12 @@ static stopwatch stopwatch_new(const plan *p, const row *r, size_t rounds) {
     return w;
 }
 
+static void stopwatch_free(stopwatch *w) {
+    tool_release(w->q);
+    tool_release(w->p);
+    tool_release(w->seconds);
+}
+
 static int stop_after(void *data, size_t step, double t, const double q[],
                       const double p[]) {
     const size_t *steps = data;
@@ -104,5 +110,7 @@ void rows_time(const plan *p, row *const rows[], size_t count, size_t rounds,
     for (size_t i = 0; i < count; i++) {
         finish(&w[i], rows[i], rounds);
         row_stepper_keep(p, rows[i], false, w[i].stepper);
+        stopwatch_free(&w[i]);
     }
+    tool_release(w);
 }

@@ -126,6 +126,8 @@ largest_rates stability_rates(const nevh_system *system,
     nevh_rates_free(fastest.rates);
     nevh_energy_free(e.energy);
     nevh_stepper_free(s);
+    tool_release(q);
+    tool_release(p);
     return fastest;
 }
 

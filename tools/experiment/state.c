@@ -174,13 +174,9 @@ static const row *first_unknown(const plan *p, const row rows[], size_t count) {
     return NULL;
 }
 
-static void explain_cells(const plan *p, const row rows[], size_t count,
-                          list *words) {
+static void explain_unknown(const plan *p, const row rows[], size_t count,
+                            list *words) {
     const row *unknown = first_unknown(p, rows, count);
-    if (any_out_of_step(rows, count))
-        list_add(words,
-                 "State error > 50 %: the computed position no longer has to "
-                 "do with the true one.");
     if (unknown && *unknown->state_unknown)
         list_print(words, "%s at dt = %.4g has no state error: %s.",
                    unknown->integrator, unknown->dt, unknown->state_unknown);
@@ -214,14 +210,7 @@ static bool starts_at_rest(const plan *p) {
     return rests;
 }
 
-void state_words(const plan *p, const row rows[], size_t count, list *words) {
-    if (any_out_of_step(rows, count) && starts_at_rest(p)) {
-        list_add(words,
-                 "The orbit starts at rest at an unstable equilibrium, up to "
-                 "rounding: what moves is rounding that grows, of which state "
-                 "errors are parts.  They say nothing of the integrators.");
-        return;
-    }
+static void explain_out_of_step(const row rows[], size_t count, list *words) {
     list names = names_out_of_step(rows, count);
     char *text = list_joined(&names);
     if (names.count)
@@ -230,5 +219,18 @@ void state_words(const plan *p, const row rows[], size_t count, list *words) {
                    "%s of %s %s wrong.",
                    names.count == 1 ? "phase" : "phases", text,
                    names.count == 1 ? "is" : "are");
-    explain_cells(p, rows, count, words);
+    list_add(words, "State error > 50 %: the computed position no longer has "
+                    "to do with the true one.");
+}
+
+void state_words(const plan *p, const row rows[], size_t count, list *words) {
+    bool out_of_step = any_out_of_step(rows, count);
+    if (out_of_step && starts_at_rest(p))
+        list_add(words,
+                 "The orbit starts at rest at an unstable equilibrium, up to "
+                 "rounding: what moves is rounding that grows, of which state "
+                 "errors are parts.  They say nothing of the integrators.");
+    else if (out_of_step)
+        explain_out_of_step(rows, count, words);
+    explain_unknown(p, rows, count, words);
 }

@@ -112,6 +112,7 @@ static void compile_all(const plan *p, row *const rows[], size_t count) {
     for (size_t i = 0; i < count; i++)
         if (all[i])
             row_stepper_keep(p, rows[i], false, all[i]);
+    tool_release(all);
 }
 
 void rows_choose_native(const plan *p, row *const rows[], size_t count,

@@ -25,6 +25,7 @@ int plan_run_from(const plan *p, nevh_stepper *stepper, double q[], double m[],
     all[count] = (nevh_observer){stop_observe, &s, 1};
     int status = nevh_run_until(stepper, p->run->t_start, p->dt[0], p->t_end, q,
                                 m, all, count + nevh_scene_stops(p->scene));
+    tool_release(all);
     *stopped = s.reached ? s.t : NAN;
     return s.reached ? NEVH_OK : status;
 }
@@ -34,8 +35,10 @@ int plan_run(const plan *p, nevh_stepper *stepper, double dt,
     plan by = *p;
     double *state = plan_state(p);
     by.dt = &dt;
-    return plan_run_from(&by, stepper, state, state + p->n, observers, count,
-                         stopped);
+    int status = plan_run_from(&by, stepper, state, state + p->n, observers,
+                               count, stopped);
+    tool_release(state);
+    return status;
 }
 
 char *stop_words(const plan *p, double t) {

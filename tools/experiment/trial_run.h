@@ -69,8 +69,7 @@ typedef struct {
     double edge_at, edge_time;
     char *failure; /* NULL, or why the orbit could not be followed */
 } trial_run;
-/*
-   chaos    whether the indicators are asked for
+/* chaos    whether the indicators are asked for
    cost     1e8 evaluations of terms, and two times nevh_chaos_find */
 trial_run trial_run_new(const plan *, bool chaos);
 void trial_run_words(const plan *, const trial_run *, list *notes);

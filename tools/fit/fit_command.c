@@ -76,9 +76,8 @@ static void choose_gradient(job *j, const options *o) {
     nevh_stepper_free(s);
     if (fits)
         j->fit.asked = before;
-    else {
+    else
         *names = before;
-    }
 }
 
 static int begin(job *j, const options *o) {

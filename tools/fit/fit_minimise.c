@@ -42,6 +42,7 @@ static int residuals(const gsl_vector *x, void *data, gsl_vector *r) {
         gsl_vector_scale(r, -1);
     else
         gsl_vector_set_all(r, no_orbit);
+    tool_release(at);
     return GSL_SUCCESS;
 }
 
@@ -68,6 +69,7 @@ static int derivatives(const gsl_vector *x, void *data, gsl_matrix *j) {
                            (before[i] - after[i]) / (right - left));
         column++;
     }
+    tool_release(at);
     tool_release(after);
     return good ? GSL_SUCCESS : GSL_EFAILED;
 }
@@ -145,9 +147,8 @@ int fit_minimise(fitting *f, size_t used, gsl_vector *x, double *chi_square,
     if (status == GSL_ENOPROG || /* rounding is all that is left */
         (status == GSL_EMAXITER && at_minimum(f, *w)))
         status = GSL_SUCCESS;
-    if (status != GSL_EFAILED) { /* an orbit that failed was a trial's */
+    if (status != GSL_EFAILED) /* an orbit that failed was a trial's */
         f->why = NULL;
-    }
     gsl_vector_memcpy(x, gsl_multifit_nlinear_position(*w));
     return status;
 }

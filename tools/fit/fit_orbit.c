@@ -33,6 +33,7 @@ static int assign(fitting *f, const varied *v, double value) {
     char *text = text_print("%s=%.17g", v->name, value);
     int status =
         v->start ? nevh_scene_set_start(s, text) : nevh_scene_set(s, text);
+    tool_release(text);
     return status;
 }
 
@@ -175,7 +176,9 @@ static bool follow(fitting *f, nevh_stepper *s, double residual[]) {
         fails(f, nevh_stepper_message(s));
     else if (!whole)
         fails(f, "the orbit ends before the data, or is not finite");
+    trajectory_free(r);
     columns_free(&c.columns);
+    tool_release(c.values);
     return whole;
 }
 
@@ -276,6 +279,7 @@ static bool turn(fitting *f, turning *w) {
             &(row_times){.by = BY_STEPS, .every = 1},
             (row_output){.take = count_turns, .data = w, .mute = true});
         trajectory_follow(r, &(trajectory_watch){.signal = &no_signal});
+        trajectory_free(r);
     }
     nevh_stepper_free(s);
     return good;

@@ -78,6 +78,7 @@ static bool determined(fitting *f, const gsl_matrix *jacobian) {
     gsl_matrix_free(v);
     gsl_vector_free(s);
     gsl_vector_free(work);
+    tool_release(length);
     return good;
 }
 
@@ -371,7 +372,6 @@ int fit_solve(fitting *f) {
     }
     take_values(f, &a);
     f->why = a.why;
-    a.why = NULL;
     int result =
         a.status || fit_is_chaotic(f) ? TOOL_FAILED : take_result(f, &a);
     attempt_free(&a);

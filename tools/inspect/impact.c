@@ -303,9 +303,8 @@ static int write_plot(const options *o, plot *to) {
 int impact(const options *o, plan *p) {
     page result = {.table = table_new()};
     plot *to = NULL;
-    if (plot_check(o)) {
+    if (plot_check(o))
         return TOOL_USAGE;
-    }
     plan_notes(p, &result.before);
     list_print(&result.before,
                "each row: the run with all effects that are on compared with "

@@ -20,6 +20,10 @@ quantities columns_new(const plan *p) {
 void columns_free(quantities *c) {
     nevh_field_free(c->field);
     nevh_shadow_free(c->shadow);
+    for (size_t i = 0; i < c->count; i++)
+        tool_release(c->item[i].name);
+    tool_release(c->item);
+    tool_release(c->observed);
 }
 
 static bool find_state(const plan *p, const char *name, quantity *column) {

@@ -82,6 +82,7 @@ int orbit_follow(orbit *o, const row_times *times, size_t columns,
         trajectory_new(&o->plan, o->integrator, s, times,
                        (row_output){.take = take, .data = &f, .mute = quiet});
     o->status = trajectory_follow(r, &(trajectory_watch){.signal = &no_signal});
+    trajectory_free(r);
     nevh_stepper_free(s);
     return o->status;
 }

@@ -69,11 +69,9 @@ static void run_orbits(portrait_job *j, orbits_of *o) {
         double q = j->members.q[o->at], m = j->members.p[o->at], stopped;
         nevh_observer observer = {take, o, o->every};
         nevh_stepper_reset(s);
-        if (plan_run_from(p, s, &q, &m, &observer, 1, &stopped) &&
-            !o->failed++) {
+        if (plan_run_from(p, s, &q, &m, &observer, 1, &stopped) && !o->failed++)
             o->status =
                 text_print("failed: %s", why_of(j, o, nevh_stepper_message(s)));
-        }
     }
     nevh_stepper_free(s);
 }
@@ -117,9 +115,8 @@ static portrait_window find_window(const portrait_job *j) {
         any = any || is_symplectic(&j->of[i]);
     for (size_t i = 0; i < j->count; i++)
         for (size_t k = 0;
-             (is_symplectic(&j->of[i]) || !any) && k < j->of[i].count; k++) {
+             (is_symplectic(&j->of[i]) || !any) && k < j->of[i].count; k++)
             hold(&w, j->of[i].points[2 * k], j->of[i].points[2 * k + 1]);
-        }
     for (size_t i = 0; i < j->data.points; i++) {
         const double *at = j->data.value + i * j->data.columns;
         hold(&w, period > 0 ? w.low_x : at[j->x], at[j->p_x]);
@@ -370,9 +367,8 @@ static void print_failures(const portrait_job *j) {
 static int draw(portrait_job *j, const options *o) {
     plot *to = NULL;
     int status = j->plan.n == 1 ? run_plane(j, &to, o) : run_section(j, &to, o);
-    if (status == TOOL_USAGE) {
+    if (status == TOOL_USAGE)
         return status;
-    }
     char *more = j->plan.n == 1
                      ? text_print("dt = %.4g%s; %zu orbit%s, grey: levels of H",
                                   j->plan.dt[0], j->plan.unit, j->members.count,

@@ -40,7 +40,7 @@ static char *append(char *to, const void *from, size_t bytes) {
     return to + bytes;
 }
 
-/* The whole file, freed by the caller. */
+/* The whole file. */
 static char *pack(const char *settings, const run_state *s, size_t *size) {
     header h = describe(settings, s);
     char *all = tool_allocate(h.size, 1), *to = all;

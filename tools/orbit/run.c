@@ -155,9 +155,10 @@ static void note(run_job *j) {
 /* All that the orbit and its rows depend on. */
 static char *describe(const run_job *j) {
     const plan *p = &j->plan;
-    char *times = text_print("%s", "");
+    text_file times;
+    text_open(&times);
     for (size_t i = 0; j->rows.by == BY_TIMES && i < j->rows.count; i++)
-        text_extend(&times, " %.17g", j->rows.time[i]);
+        fprintf(times.file, " %.17g", j->rows.time[i]);
     return text_print(
         "nevh = %s\nscene = %016llx\nintegrator = %s\ndt = %.17g\n"
         "t_end = %.17g\ngradient = %s\ngradient step = %.17g\n"
@@ -167,7 +168,8 @@ static char *describe(const run_job *j) {
         j->integrator, p->dt[0], p->t_end, p->gradients.item[0],
         p->gradient_step, p->tolerances ? p->tolerance[0] : 0,
         p->portable ? "yes" : "no",
-        p->run->transform ? p->run->transform : "none", j->rows_text, times);
+        p->run->transform ? p->run->transform : "none", j->rows_text,
+        text_close(&times));
 }
 
 /* Saving. */

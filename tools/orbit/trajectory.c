@@ -76,6 +76,15 @@ trajectory *trajectory_new(const plan *p, const char *integrator,
     return r;
 }
 
+void trajectory_free(trajectory *r) {
+    tool_release(r->now.memory);
+    tool_release(r->now.q);
+    tool_release(r->now.p);
+    tool_release(r->observed);
+    tool_release(r->more);
+    tool_release(r);
+}
+
 /* Cells. */
 
 static void add_title(trajectory *r, const char *prefix, const char *name) {

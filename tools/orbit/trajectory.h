@@ -90,6 +90,7 @@ typedef struct trajectory trajectory;
    stepper     of that integrator, and borrowed; plan and times, too */
 trajectory *trajectory_new(const plan *, const char *integrator, nevh_stepper *,
                            const row_times *, row_output);
+void trajectory_free(trajectory *);
 /* All columns' names. */
 void trajectory_header(trajectory *);
 typedef struct {

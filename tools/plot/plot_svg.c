@@ -279,7 +279,7 @@ void plot_svg(const plot *p, const target *t, FILE *to) {
         text_file text;
         put_picture(text_open(&text), p, &l, detail);
         char *picture = text_close(&text);
-        size = strlen(picture);
+        size = text.size;
         if (size <= most || detail * coarser > coarsest) {
             fwrite(picture, 1, size, to);
             size = 0;

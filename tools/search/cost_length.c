@@ -103,9 +103,8 @@ static table *table_of(const lengths *l) {
     table *t = table_new();
     bool gradients = l->plan.gradients.count > 1;
     table_titles(t, gradients ? "integrator,gradient,dt" : "integrator,dt");
-    for (size_t k = 0; k < LENGTHS; k++) {
+    for (size_t k = 0; k < LENGTHS; k++)
         table_column(t, text_print("  t = %.3g", l->end[k]));
-    }
     table_titles(t, "error\ngrows as,ms");
     for (size_t i = 0; i < l->schemes; i++) {
         const row *longest = row_at(l, i, LENGTHS - 1);
@@ -113,9 +112,8 @@ static table *table_of(const lengths *l) {
         if (gradients)
             table_text(t, longest->gradient);
         table_shown(t, "%.4g", longest->dt);
-        for (size_t k = 0; k < LENGTHS; k++) {
+        for (size_t k = 0; k < LENGTHS; k++)
             table_text(t, digits_text(l, i, k));
-        }
         if (isnan(growth(l, i)))
             table_text(t, "-");
         else

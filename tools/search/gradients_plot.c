@@ -52,7 +52,9 @@ static double error_at(const drawing *d, const char *gradient, double x) {
     double *steps = tool_allocate(2 * n, sizeof *steps);
     for (size_t k = 0; k < 2 * n; k++)
         steps[k] = d->relative ? x * d->size[k] : x;
-    return gradient_error(d->gradients_job, gradient, steps);
+    double error = gradient_error(d->gradients_job, gradient, steps);
+    tool_release(steps);
+    return error;
 }
 
 static double place(const drawing *d, double x) {
