@@ -44,7 +44,11 @@ int invariants_observe(void *data, size_t step, double t, const double q[],
 }
 
 double *invariants_result(invariants *v) {
-    return v->change;
+    double *change = v->change;
+    tool_release(v->first);
+    tool_release(v->now);
+    tool_release(v);
+    return change;
 }
 
 /* A part of the ranges of the reference, where there is one. */

@@ -20,7 +20,9 @@ const nevh_integrator *plan_scheme(const plan *p, const char *name,
     if (plus && !*transformed && !nevh_substeps_named(name))
         return NULL;
     char *own = text_print("%.*s", (int)strcspn(name, "+"), name);
-    return nevh_scene_integrator_named(p->scene, own);
+    const nevh_integrator *scheme = nevh_scene_integrator_named(p->scene, own);
+    tool_release(own);
+    return scheme;
 }
 
 static void take_names(list *l, const list *given, const char *const scene[],

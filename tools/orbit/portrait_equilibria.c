@@ -294,6 +294,7 @@ void levels_find_equilibria(levels *l) {
             if (changes_signs(&s, i, k) || (inside && is_smallest(&s, i, k)))
                 search(&s, i, k);
         }
+    tool_release(s.f);
     if (l->count)
         qsort(l->found, l->count, sizeof *l->found, by_distance);
     l->many = l->count == MOST_EQUILIBRIA;

@@ -178,6 +178,7 @@ static void put_guides(FILE *f, const plot *p, size_t number, pair at,
                     at.x + names[i].to.x,
                     at.y + l->panel_height - names[i].to.y);
     }
+    tool_release(names);
 }
 
 /* Each with its name, which a browser shows where the pointer is. */

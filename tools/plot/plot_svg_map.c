@@ -53,6 +53,11 @@ static bands bands_new(const plot_screen *s, size_t count, const double x[],
     return b;
 }
 
+static void bands_free(bands *b) {
+    tool_release(b->of);
+    tool_release(b->low);
+}
+
 static unsigned char level_of(const field_map *m, double z) {
     return isfinite(z) ? (unsigned char)limited(
                              floor(plot_map_share(m, z) * LEVELS), LEVELS - 1)
@@ -144,6 +149,9 @@ void plot_svg_map(FILE *f, const field_map *m, const plot_screen *s, pair at) {
     for (int i = 0; i < LEVELS; i++)
         put_level(f, i, level, &columns, &rows, at.y + s->height, at.x);
     fputs("</g>\n", f);
+    tool_release(level);
+    bands_free(&columns);
+    bands_free(&rows);
 }
 
 void plot_svg_palette(FILE *f, double left, double top, double height) {

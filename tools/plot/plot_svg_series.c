@@ -124,6 +124,7 @@ static void put_polygon(FILE *f, const plot_look *l, const plot_screen *s,
     count = cut_polygon(other, count, false, at.x + s->width, -1, point);
     count = cut_polygon(point, count, true, at.y, 1, other);
     count = cut_polygon(other, count, true, at.y + s->height, -1, point);
+    tool_release(other);
     if (!count)
         return;
     fprintf(f,
@@ -148,6 +149,7 @@ static void put_areas(FILE *f, const plot_look *l, const plot_screen *s,
             put_polygon(f, l, s, at, polygon, points);
             points = 0;
         }
+    tool_release(polygon);
 }
 
 /* Near ones follow each other: by rows of a pixel. */

@@ -44,6 +44,14 @@ static nevh_options gradient_options(const gradients_job *c,
     return o;
 }
 
+static void states_free(orbit_states *o) {
+    tool_release(o->t);
+    tool_release(o->q);
+    tool_release(o->p);
+    tool_release(o->h);
+    nevh_field_free(o->field);
+}
+
 /* The orbit with that gradient, observed. */
 static int follow(const gradients_job *c, const char *gradient, double step,
                   const nevh_observer *observer) {
@@ -58,6 +66,7 @@ static int follow(const gradients_job *c, const char *gradient, double step,
         status = nevh_run(s, c->plan->run->t_start, c->dt, c->steps, q, p,
                           observer, 1);
     nevh_stepper_free(s);
+    tool_release(q);
     return status;
 }
 
@@ -98,6 +107,8 @@ static double largest_error(const gradients_job *c, nevh_field *f) {
             error = fmax(error, fabs(dp[k] - c->dp[i * n + k]));
         }
     }
+    tool_release(dq);
+    tool_release(dp);
     return error / c->size;
 }
 
@@ -137,6 +148,7 @@ static double time_of(const gradients_job *c, nevh_field *f) {
         } while (now - start < enough);
         seconds[round] = (now - start) / (double)count;
     }
+    tool_release(out);
     return 1e9 * numbers_median(seconds, ROUNDS_TIMED);
 }
 
@@ -220,7 +232,7 @@ static double energy_along(const gradients_job *c, const finding *g) {
         follow(c, g->gradient, g->step, &(nevh_observer){record, &o, 1});
     for (size_t i = 0; i < o.count; i++)
         most = fmax(most, fabs(o.h[i] - o.h[0]) / c->scale);
-    nevh_field_free(o.field);
+    states_free(&o);
     return status || c->plan->balance ? NAN : most;
 }
 

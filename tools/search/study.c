@@ -417,6 +417,8 @@ row *study_cheapest(const study *l, double target) {
         error[i] = isnan(work[i]) ? INFINITY : study_error(&l->level[i]);
     }
     size_t i = grid_cheapest(error, work, l->count, target);
+    tool_release(error);
+    tool_release(work);
     return i < l->count ? &l->level[i] : NULL;
 }
 
