@@ -133,6 +133,7 @@ static int take(const char *name, const char *all, const char *settings,
     char *saved =
         text_print("%.*s", (int)h.settings_size, memory + h.memory_size);
     int status = compare_settings(name, saved, settings);
+    tool_release(saved);
     if (!status && (h.n != s->n || h.memory_size != s->memory_size))
         status = tool_refuse("%s belongs to another version of nevh", name);
     if (status)
@@ -159,6 +160,7 @@ int state_load(const char *name, const char *settings, run_state *s) {
         status = tool_refuse("%s is damaged, or no state of a run", name);
     else
         status = take(name, all, settings, s);
+    tool_release(all);
     return status;
 }
 

@@ -126,7 +126,9 @@ static void go_on(unsigned how, const uint8_t *bytes, size_t size) {
         s->at.t = s->at.step == 20 ? 2 : (double)s->at.step * 0.1;
     if (trajectory_restore(r) == TOOL_OK)
         trajectory_follow(r, &(trajectory_watch){.signal = &never});
+    trajectory_free(r);
     lines_close(&lines);
+    tool_release(lines.text);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
