@@ -11,6 +11,8 @@ static char *print(const char *format, va_list arguments) {
     va_copy(again, arguments);
     int length = vsnprintf(NULL, 0, format, again);
     va_end(again);
+    if (length < 0) /* 2 GiB and above */
+        tool_owned(NULL);
     char *text = tool_allocate((size_t)length + 1, 1);
     vsnprintf(text, (size_t)length + 1, format, arguments);
     return text;
