@@ -229,17 +229,9 @@ bool nevh__native_write(nevh__writer *text, nevh_work *w) {
 /* The text of what is compiled; false: there is none.  What the steps call is known
    once they are written. */
 static bool write_text(nevh__writer *text, nevh_work *w) {
-    nevh__writer all = {0};
-    bool fine = nevh__native_write(text, w) && !text->failed;
-    if (!fine)
+    if (!nevh__native_write(text, w) || text->failed)
         return false;
-    nevh__write_prelude(&all, text);
-    nevh__write(&all, "%s", text->text);
-    text->failed = all.failed;
-    free(text->text);
-    text->text = all.text;
-    text->used = all.used;
-    text->room = all.room;
+    nevh__write_prelude(text);
     return !text->failed;
 }
 
@@ -302,7 +294,7 @@ double nevh__native_saves(nevh_work *w) {
     if (w->options->native != NEVH_NATIVE_AUTO || obstacle(w))
         return NAN;
     if (write_text(&text, w))
-        seconds = saved_by(w, strlen(text.text));
+        seconds = saved_by(w, nevh__compiled_characters(&text));
     nevh__writer_free(&text);
     return seconds;
 }
@@ -414,7 +406,7 @@ static bool native_plan(nevh_work *w, nevh__native *x, nevh__writer *text,
     if (!written || !native_fill(x, w))
         return false;
     x->watches = text->watched;
-    x->characters = strlen(text->text);
+    x->characters = nevh__compiled_characters(text);
     bool compile = compiling_pays(w, x->characters);
     if (!native_load(w, x, text->text, compile, why)) {
         if (!compile)

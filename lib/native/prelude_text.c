@@ -6,6 +6,7 @@
 #include "native/writer_private.h"
 #include <nevh/simd.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 const nevh__lane_words nevh__eight = {"wide", "ALL", "EACH_LANE", "wide_"};
@@ -52,6 +53,11 @@ const char *nevh__write_elementary(nevh__writer *w,
             return lanes ? lanes->call : "nevh__one_";
         }
     return lanes ? lanes->call : "";
+}
+
+size_t nevh__compiled_characters(const nevh__writer *text) {
+    enum { QUICK = 4 }; /* most of them no step calls */
+    return text->used - text->elementary + text->elementary / QUICK;
 }
 
 static unsigned families_of(unsigned calls) {
@@ -147,15 +153,25 @@ static void write_elementary_lanes(nevh__writer *w, int lanes,
     }
 }
 
-void nevh__write_prelude(nevh__writer *w, const nevh__writer *text) {
+void nevh__write_prelude(nevh__writer *text) {
+    nevh__writer all = {0};
     int lanes = nevh__vector_lanes();
-    nevh__write_lines(w, nevh__compiled_formulas_text);
-    nevh__write_lines(w, nevh__formula_needs_text);
+    nevh__write_lines(&all, nevh__compiled_formulas_text);
+    nevh__write_lines(&all, nevh__formula_needs_text);
     if (lanes == 8)
-        nevh__write(w, "#ifndef __AVX512F__\n#error no vectors of eight\n"
-                       "#endif\n");
+        nevh__write(&all, "#ifndef __AVX512F__\n#error no vectors of eight\n"
+                          "#endif\n");
     if (lanes == 4)
-        nevh__write(w, "#ifndef __AVX2__\n#error no vectors of four\n#endif\n");
-    nevh__write_elementary_numbers(w, text);
-    write_elementary_lanes(w, lanes, text->calls);
+        nevh__write(&all,
+                    "#ifndef __AVX2__\n#error no vectors of four\n#endif\n");
+    text->elementary = all.used;
+    nevh__write_elementary_numbers(&all, text);
+    write_elementary_lanes(&all, lanes, text->calls);
+    text->elementary = all.used - text->elementary;
+    nevh__write(&all, "%s", text->text);
+    free(text->text);
+    text->text = all.text;
+    text->used = all.used;
+    text->room = all.room;
+    text->failed |= all.failed;
 }

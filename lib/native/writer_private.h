@@ -60,6 +60,7 @@ typedef struct {
     unsigned
         calls[NEVH__CALLERS]; /* elementary functions: bits, of one number, of
                                       four and of eight */
+    size_t elementary;        /* characters of these functions */
     bool failed;              /* memory is out */
     const char *refusal;      /* why there is no text; NULL: there is */
 } nevh__writer;
@@ -202,9 +203,11 @@ bool nevh__write_complex(nevh__writer *, nevh__formula_text *,
 void nevh__derivative_name(const nevh__formula_text *, nevh__variable, size_t k,
                            char name[NEVH__NAME]);
 
-/* Writes what formulas need before them: elementary functions, as far as `text` calls
+/* Characters that take a compiler as long: those of elementary functions take less. */
+size_t nevh__compiled_characters(const nevh__writer *);
+/* Writes before a text what formulas need: elementary functions, as far as it calls
    them. */
-void nevh__write_prelude(nevh__writer *, const nevh__writer *text);
+void nevh__write_prelude(nevh__writer *text);
 void nevh__write_elementary_numbers(nevh__writer *, const nevh__writer *text);
 /* "nevh__one_" or the like: what the name of an elementary function begins with;
    notes that the text calls it.  lanes: NULL for one number */

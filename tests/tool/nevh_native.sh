@@ -47,7 +47,7 @@ has '^native: all steps are compiled$'
 
 # Nothing is compiled for short runs.
 rm -rf $cache
-long='--set g=9.7 --gradient exact --t-end 20000'
+long='--set g=9.7 --gradient exact --t-end 25000'
 few='--set g=9.7 --gradient exact --t-end 5'
 for what in 'compare pendulum --integrators verlet,gauss8' \
     'cost pendulum --integrators verlet,gauss8 --dt 0.1,0.05' \

@@ -15,7 +15,7 @@ compares() {
 }
 
 # A beat of step and period, or another modulation, slower than the run.
-compares double-pendulum-regular --integrators tao2,gauss8,rk4 --dt 0.04386 \
+compares double-pendulum-regular --integrators tao2,gauss8,rk4 --dt 0.0438 \
     --t-end 60
 verdicts tao2=bounded gauss8=bounded rk4=drifts
 compares pendulum --integrators gauss16,gauss20 --dt 0.8 --t-end 100
@@ -40,7 +40,7 @@ verdicts midpoint=bounded rk4=drifts
 compares fput-1000 --integrators midpoint --dt 0.23041 --t-end 50
 verdicts midpoint=bounded
 # Of the chaotic one 480 lengths have an error 85 times as large, which grows.
-compares double-pendulum-chaotic --integrators gauss8,rk4 --dt 0.045249 \
+compares double-pendulum-chaotic --integrators gauss8,rk4 --dt 0.0451 \
     --t-end 60
 verdicts 'gauss8=(random-walk|undecided)' rk4=drifts
 
@@ -126,7 +126,7 @@ has '^midpoint at dt = 0\.25: the energy error is at most 3\.3e-03 in the run, b
 compares $textbook/tilted-quartic.nevh --integrators position-verlet --dt 0.25 \
     --t-end 31.5
 verdicts 'position-verlet=(undecided|unstable)'
-compares $textbook/driven-duffing.nevh --integrators gauss8,rkn14a --dt 0.33613 \
+compares $textbook/driven-duffing.nevh --integrators gauss8,rkn14a --dt 0.336451 \
     --t-end 28.57
 verdicts 'gauss8=(undecided|random-walk)'
 compares $textbook/phi-four.nevh --integrators verlet --dt 0.36697 --t-end 500
@@ -172,7 +172,7 @@ verdicts gauss6=undecided gauss8=undecided
 scene 'x = 1\np_x = 0.3' 'K = p_x^2/2\nV = sqrt(sin(x)^2)' 't_end = 20\ndt = 0.05' \
     root
 compares $work/root.nevh --integrators gauss4,gauss8 --gradient central4
-verdicts gauss4=unstable gauss8=undecided
+verdicts gauss4=unstable 'gauss8=(undecided|random-walk)'
 
 # In a resonance the error grows with the square of the time, as the energies do.
 scene 'x = 1\ny = 0' \
