@@ -485,7 +485,7 @@ TEST(elementary_same_bits) {
         nevh__write(&steps, "}\n");
     }
     nevh__write_prelude(&steps);
-    void *library = nevh__native_load(steps.text, "", true, why);
+    void *library = nevh__native_load(steps.text, "", 120, why);
     ck_assert_msg(library, "%s", why);
     for (size_t i = 0; i < count; i++)
         compare_elementary(&tried[i], library);
