@@ -68,6 +68,7 @@ libnevh_core_la_SOURCES = \
 	lib/elementary/elementary_text.h \
 	lib/elementary/elementary_edges.h \
 	lib/elementary/elementary_lanes.h \
+	lib/elementary/elementary_vectors.h \
 	lib/expression/tape_private.h \
 	lib/expression/tape_inside_private.h \
 	lib/expression/operations_private.h \

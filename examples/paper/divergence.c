@@ -130,8 +130,8 @@ int main(void) {
         figure(system, model[i]);
         delays(system, model[i]);
         exponent(system, model[i], i ? 50 : 150, 1);
-        exponent(system, model[i], i ? 50 : 300, 4); /* H as printed: most
-                                                        orbits leave by 300 */
+        /* Of H as printed most orbits leave by t = 300: more orbits, for less time. */
+        exponent(system, model[i], i ? 50 : 300, i ? 16 : 4);
         nevh_system_free(system);
     }
     return 0;

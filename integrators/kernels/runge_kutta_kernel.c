@@ -269,11 +269,8 @@ NEVH_SIMD static void sum_up(const nevh__stages *s, const nevh__sum *sum,
     nevh__vector rows[2];
     nevh__runge_kutta_step x = {.step = y->step, .slopes = y->slopes};
     if (s->columns == 1 && lanes > 1) {
-        for (; i < size; i += 2 * lanes, out += 2) {
-            nevh__runge_kutta_sum(&x, sum, 2, i, rows);
-            out[0] = rows[0][0];
-            out[1] = rows[1][0];
-        }
+        for (; i < size; i += lanes)
+            *out++ = y->step[i] * nevh__add_up_one(sum, y->slopes + i);
         return;
     }
     double *to = lanes == s->columns ? out : y->point;

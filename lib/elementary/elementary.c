@@ -32,33 +32,16 @@ NEVH__EACH_TWO(TWO)
 #define NEVH__INLINE __attribute__((always_inline)) TARGET static inline
 #undef NEVH__RARE
 #define NEVH__RARE __attribute__((cold, noinline)) TARGET
-#define ONE(name, f, family)                                                   \
-    TARGET NEVH_API VECTOR ABI(v_nevh_simd_##name)(VECTOR);                    \
-    TARGET VECTOR ABI(v_nevh_simd_##name)(VECTOR x) {                          \
-        return NAME(f)(x);                                                     \
-    }
-#define TWO(name, f, family)                                                   \
-    TARGET NEVH_API VECTOR ABI(vv_nevh_simd_##name)(VECTOR, VECTOR);           \
-    TARGET VECTOR ABI(vv_nevh_simd_##name)(VECTOR x, VECTOR y) {               \
-        return NAME(f)(x, y);                                                  \
-    }
-
-#define TARGET    __attribute__((target("sse2")))
-#define VECTOR    two_numbers
-#define ABI(rest) _ZGVbN2##rest
-#define NAME(f)   two_##f
+#define TARGET     __attribute__((target("sse2")))
+#define VECTOR     two_numbers
+#define ABI(rest)  _ZGVbN2##rest
+#define NAME(f)    two_##f
 typedef double two_numbers __attribute__((vector_size(16), aligned(8)));
 #define NEVH__SIDE   2
 #define NEVH__NUMBER two_numbers
 #define NEVH__PAIR   two_pair
 #define NEVH__E(f)   two_##f
-#include "elementary/elementary_lanes.h"
-NEVH__EACH_ONE(ONE)
-NEVH__EACH_TWO(TWO)
-#undef TARGET
-#undef VECTOR
-#undef ABI
-#undef NAME
+#include "elementary/elementary_vectors.h"
 
 #define TARGET    __attribute__((target("avx")))
 #define VECTOR    four_numbers
@@ -69,27 +52,17 @@ typedef double four_numbers __attribute__((vector_size(32), aligned(8)));
 #define NEVH__NUMBER four_numbers
 #define NEVH__PAIR   four_pair
 #define NEVH__E(f)   four_##f
-#include "elementary/elementary_lanes.h"
-NEVH__EACH_ONE(ONE)
-NEVH__EACH_TWO(TWO)
-#undef TARGET
-#undef ABI
-#undef NAME
+#include "elementary/elementary_vectors.h"
 
 #define TARGET       __attribute__((target("avx2")))
+#define VECTOR       four_numbers
 #define ABI(rest)    _ZGVdN4##rest
 #define NAME(f)      four_avx2_##f
 #define NEVH__SIDE   4
 #define NEVH__NUMBER four_numbers
 #define NEVH__PAIR   four_avx2_pair
 #define NEVH__E(f)   four_avx2_##f
-#include "elementary/elementary_lanes.h"
-NEVH__EACH_ONE(ONE)
-NEVH__EACH_TWO(TWO)
-#undef TARGET
-#undef VECTOR
-#undef ABI
-#undef NAME
+#include "elementary/elementary_vectors.h"
 
 #define TARGET    __attribute__((target("avx512f,avx512dq,avx512vl,avx512bw")))
 #define VECTOR    eight_numbers
@@ -100,7 +73,5 @@ typedef double eight_numbers __attribute__((vector_size(64), aligned(8)));
 #define NEVH__NUMBER eight_numbers
 #define NEVH__PAIR   eight_pair
 #define NEVH__E(f)   eight_##f
-#include "elementary/elementary_lanes.h"
-NEVH__EACH_ONE(ONE)
-NEVH__EACH_TWO(TWO)
+#include "elementary/elementary_vectors.h"
 #endif

@@ -55,20 +55,21 @@ static NEVH__RARE nevh__one_pair nevh__one_turned_far(double x,
     return back != minus ? (nevh__one_pair){-p.hi, -p.lo} : p;
 }
 
-static NEVH__RARE double nevh__one_sin_far(double x) {
+/* The sine of x and so many quarters of a turn more. */
+static NEVH__RARE double nevh__one_circle_far(double x, uint64_t more) {
     uint64_t quarters;
     if (!(nevh__one_size(x) < INFINITY))
         return NAN;
     nevh__one_pair near = nevh__one_turned_far(x, &quarters);
-    return nevh__one_circle(near, quarters);
+    return nevh__one_circle(near, quarters + more);
+}
+
+static NEVH__RARE double nevh__one_sin_far(double x) {
+    return nevh__one_circle_far(x, 0);
 }
 
 static NEVH__RARE double nevh__one_cos_far(double x) {
-    uint64_t quarters;
-    if (!(nevh__one_size(x) < INFINITY))
-        return NAN;
-    nevh__one_pair near = nevh__one_turned_far(x, &quarters);
-    return nevh__one_circle(near, quarters + 1);
+    return nevh__one_circle_far(x, 1);
 }
 
 static NEVH__RARE double nevh__one_tan_far(double x) {

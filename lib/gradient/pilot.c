@@ -28,6 +28,33 @@ static void add_sample(nevh__step_selection *e, double t, const double q[],
     s->count++;
 }
 
+/* The row of largest sizes for the sample that comes next. */
+static double *largest_row(nevh__samples *s, size_t n) {
+    return s->largest + s->count * 2 * n;
+}
+
+/* Sizes of a state on the way to the next sample. */
+static void add_sizes(nevh__step_selection *e, const double y[]) {
+    size_t n = e->field->n;
+    if (e->samples.count == e->samples.most)
+        return;
+    double *largest = largest_row(&e->samples, n);
+    for (size_t i = 0; i < 2 * n; i++)
+        largest[i] = fmax(largest[i], fabs(y[i]));
+}
+
+/* The next sample's largest sizes are at least those of the sample before. */
+static void begin_sizes(nevh__step_selection *e) {
+    size_t n = e->field->n;
+    nevh__samples *s = &e->samples;
+    if (s->count == s->most)
+        return;
+    double *row = largest_row(s, n);
+    for (size_t i = 0; i < 2 * n; i++)
+        row[i] = s->count > e->lanes ? row[i - 2 * n]
+                                     : nevh__largest_size(e, i, s->count);
+}
+
 /* Displaced from one of the lanes given. */
 static void add_random(nevh__step_selection *e, size_t lane, double part,
                        uint64_t *random) {
@@ -90,14 +117,18 @@ static void pilot_integrate(nevh__step_selection *e, int steps,
     memcpy(y + n, e->samples.p, n * sizeof *y);
     double t = e->samples.t[0], h = nevh__first_step(e, ode, t, y, y + 2 * n);
     int status = h > 0 ? GSL_SUCCESS : GSL_FAILURE;
+    begin_sizes(e);
     for (int i = 1; !status && i <= steps; i++) {
         status = gsl_odeiv2_evolve_apply(evolve, control, step, ode, &t,
                                          0.5 * DBL_MAX, &h, y);
         if (!status && runs_away(e, y))
             break;
+        if (!status)
+            add_sizes(e, y);
         if (status || i % (steps / PILOT_SAMPLES) != 0)
             continue;
         add_sample(e, t, y, y + n);
+        begin_sizes(e);
         if (e->scales_alone &&
             nevh__sizes_settled(e, e->samples.count - e->lanes))
             break;

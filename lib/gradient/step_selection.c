@@ -27,10 +27,11 @@ size_t nevh__step_at(const nevh__planned *term, size_t instance, size_t k) {
     return instance / nevh__stride(term->term->decl.count) * term->nv + k;
 }
 
-/* The largest size of a variable in the first `count` samples. */
-static double step_selection_largest(const nevh__step_selection *e, size_t i,
-                                     size_t count) {
+double nevh__largest_size(const nevh__step_selection *e, size_t i,
+                          size_t count) {
     size_t n = e->field->n;
+    if (count > e->lanes)
+        return e->samples.largest[(count - 1) * 2 * n + i];
     const double *x = i < n ? e->samples.q : e->samples.p;
     double most = 0;
     for (size_t at = 0; at < count; at++)
@@ -42,9 +43,9 @@ bool nevh__sizes_settled(const nevh__step_selection *e, size_t count) {
     if (count < FEWEST_SAMPLES || (count & (count - 1)) != 0)
         return false;
     for (size_t i = 0; i < 2 * e->field->n; i++) {
-        double before = step_selection_largest(e, i, e->lanes + count / 2);
+        double before = nevh__largest_size(e, i, e->lanes + count / 2);
         if (before < e->length[i] &&
-            step_selection_largest(e, i, e->lanes + count) > 2 * before)
+            nevh__largest_size(e, i, e->lanes + count) > 2 * before)
             return false;
     }
     return true;
@@ -58,7 +59,7 @@ static void set_scales(nevh__step_selection *e) {
     while (e->lanes + count < e->neighbours && !nevh__sizes_settled(e, count))
         count++;
     for (size_t i = 0; i < 2 * f->n; i++) {
-        double most = step_selection_largest(e, i, e->lanes + count);
+        double most = nevh__largest_size(e, i, e->lanes + count);
         f->scale[i] = most > 0 ? fmin(most, e->length[i]) : e->length[i];
     }
 }
@@ -110,7 +111,8 @@ int nevh__step_selection_init(nevh__step_selection *e, nevh_field *f,
     e->length = nevh__array(2 * n, sizeof *e->length);
     e->samples.q = nevh__array((most + 1) * n, sizeof *e->samples.q);
     e->samples.p = nevh__array((most + 1) * n, sizeof *e->samples.p);
-    if (!e->length || !e->samples.q || !e->samples.p)
+    e->samples.largest = nevh__array(2 * most * n, sizeof *e->samples.largest);
+    if (!e->length || !e->samples.q || !e->samples.p || !e->samples.largest)
         return nevh__no_memory(&f->report);
     nevh__find_lengths(e);
     return NEVH_OK;
@@ -120,6 +122,7 @@ void nevh__step_selection_clear(nevh__step_selection *e) {
     free(e->length);
     free(e->samples.q);
     free(e->samples.p);
+    free(e->samples.largest);
 }
 
 int nevh__field_select_steps(nevh_field *f, const nevh_options *o) {

@@ -32,6 +32,8 @@ typedef struct {
     double t[NEVH__MOST_SAMPLES + 1];
     double *q, *p; /* (most + 1) x n: the last one is nevh__verify's
                       and nevh__sizes_from_start's */
+    double
+        *largest; /* most x 2n: sizes at most on the pilot's way to a sample */
 } nevh__samples;
 
 /* The state of planning. */
@@ -106,6 +108,9 @@ void nevh__set_crude_steps(nevh__step_selection *);
    dydt     out, 2n */
 double nevh__first_step(const nevh__step_selection *, const void *ode, double t,
                         const double y[], double dydt[]);
+/* The largest size of a variable on the way to the last of the first `count` samples,
+   of which the states given come first. */
+double nevh__largest_size(const nevh__step_selection *, size_t i, size_t count);
 /* True if the first `count` samples of the pilot suffice for scales: the second
    half of them doubled no size that is below its length. */
 bool nevh__sizes_settled(const nevh__step_selection *, size_t count);

@@ -20,9 +20,9 @@ void nevh__write_adaptive(nevh__writer *w, const nevh_work *work,
     nevh__write_constant(w, "FIRST_PART", rule->part);
     nevh__write_array(w, "SCALES", "N", 2 * work->n, work->scale);
     nevh__write(w, "%s", w->readable ? "" : needs);
-    nevh__write_elementary(w, NULL, "log");
-    nevh__write_elementary(w, NULL, "exp");
-    nevh__write_elementary(w, NULL, "pow");
+    nevh__elementary_call(w, NULL, "log");
+    nevh__elementary_call(w, NULL, "exp");
+    nevh__elementary_call(w, NULL, "pow");
     nevh__write_lines(w, nevh__pace_text);
     nevh__write_lines(w, nevh__adaptive_step_text);
     nevh__write_lines(w, nevh__adaptive_driver_text);

@@ -19,8 +19,8 @@ bool nevh__write_adaptive_verlet(nevh__writer *w, nevh_work *work) {
     nevh__write_constant(w, "UNIT_Q", unit_q);
     nevh__write_constant(w, "UNIT_P", unit_p);
     nevh__write(w, "static const double LEAST_RATE = %s;\n", least);
-    nevh__write_elementary(w, NULL, "hypot");
-    nevh__write_elementary(w, NULL, "pow");
+    nevh__elementary_call(w, NULL, "hypot");
+    nevh__elementary_call(w, NULL, "pow");
     nevh__write_lines(w, nevh__adaptive_verlet_step_text);
     if (w->readable)
         nevh__write_lines(w, nevh__fraction_text);

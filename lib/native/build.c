@@ -152,7 +152,7 @@ static void free_place(place *p) {
 
 /* True if a compiler that took too long is to be left alone, so that a command that
    has many texts waits for it once; the caller that waits longest asks all the
-   same. */
+   same.  A note that is older than that is removed. */
 static bool was_late(const place *p, double seconds,
                      char why[NEVH__WHY_NATIVE]) {
     enum { APART = 600 };

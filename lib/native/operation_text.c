@@ -69,7 +69,7 @@ static const char *write_word(nevh__writer *w, const char *word, size_t length,
     }
     size_t bytes = strcspn(after, ")") - 1;
     nevh__write(w, "%s%.*s",
-                i ? before[i] : nevh__write_elementary(w, m->lanes, after + 1),
+                i ? before[i] : nevh__elementary_call(w, m->lanes, after + 1),
                 (int)bytes, after + 1);
     return after + bytes + 2;
 }

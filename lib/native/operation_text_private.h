@@ -21,7 +21,7 @@ typedef enum {
 
 /* True if its value is that of a function of vectors, which is called. */
 bool nevh__operation_calls(unsigned operation);
-/* The largest size of a result where the arguments are finite, and below a and b. */
+/* A bound of the size of a result whose arguments have sizes up to a and b. */
 double nevh__operation_bound(unsigned operation, double a, double b);
 /* The expression alone. */
 void nevh__write_expression(nevh__writer *, unsigned operation,

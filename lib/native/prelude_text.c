@@ -40,9 +40,9 @@ static const struct {
 enum { FUNCTIONS = sizeof functions / sizeof *functions };
 enum { OF_ONE, OF_FOUR, OF_EIGHT };
 
-const char *nevh__write_elementary(nevh__writer *w,
-                                   const nevh__lane_words *lanes,
-                                   const char *function) {
+const char *nevh__elementary_call(nevh__writer *w,
+                                  const nevh__lane_words *lanes,
+                                  const char *function) {
     size_t length = strspn(function, "abcdefghijklmnopqrstuvwxyz0123456789");
     for (size_t i = 0; i < FUNCTIONS; i++)
         if (strlen(functions[i].name) == length &&

@@ -239,7 +239,8 @@ static size_t end_of_constant(char **lines, size_t i, size_t count,
     do
         line = lines[end++];
     while (end < count && lines[end] &&
-           (is_macro ? line[strlen(line) - 1] == '\\' : !strstr(line, "};")));
+           (is_macro ? *line && line[strlen(line) - 1] == '\\'
+                     : !strstr(line, "};")));
     return end;
 }
 

@@ -16,8 +16,8 @@ bool nevh__write_tao(nevh__writer *w, nevh_work *work) {
     nevh__write_array(w, "RATIOS", "N", work->n, binding->ratio);
     nevh__write_constant(w, "OMEGA", binding->omega);
     nevh__write(w, "\n");
-    nevh__write_elementary(w, NULL, "sin");
-    nevh__write_elementary(w, NULL, "cos");
+    nevh__elementary_call(w, NULL, "sin");
+    nevh__elementary_call(w, NULL, "cos");
     nevh__write_lines(w, nevh__tao_step_text);
     nevh__write_lines(w, nevh__tao_driver_text);
     nevh__write_driver(w, true, 0);

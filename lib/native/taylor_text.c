@@ -69,7 +69,7 @@ static void write_call(const author *a, const nevh__batch *b, size_t y,
         nevh__write(a->text, "v%zu = 0;\n", y);
         return;
     }
-    const char *before = nevh__write_elementary(a->text, NULL, name);
+    const char *before = nevh__elementary_call(a->text, NULL, name);
     nevh__write(a->text, "v%zu = %s%s(%s%s%s);\n", y, before, name, x,
                 b->arity > 1 ? ", " : "", b->arity > 1 ? z : "");
 }
@@ -84,7 +84,7 @@ static void write_power(const author *a, size_t y, const char *x,
         nevh__write(a->text, "v%zu = 1 / __builtin_sqrt(%s);\n", y, x);
     else
         nevh__write(a->text, "v%zu = %spow(%s, N[%zu]);\n", y,
-                    nevh__write_elementary(a->text, NULL, "pow"), x, number);
+                    nevh__elementary_call(a->text, NULL, "pow"), x, number);
     nevh__write(a->text, "const double e%zu = 1 / %s;\n", y, x);
 }
 

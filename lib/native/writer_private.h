@@ -211,9 +211,8 @@ void nevh__write_prelude(nevh__writer *text);
 void nevh__write_elementary_numbers(nevh__writer *, const nevh__writer *text);
 /* "nevh__one_" or the like: what the name of an elementary function begins with;
    notes that the text calls it.  lanes: NULL for one number */
-const char *nevh__write_elementary(nevh__writer *,
-                                   const nevh__lane_words *lanes,
-                                   const char *function);
+const char *nevh__elementary_call(nevh__writer *, const nevh__lane_words *lanes,
+                                  const char *function);
 
 /* After w->group was chosen: what kernels' texts need; finite: nevh__not_finite, sums: stage_sums.  DOF is the
    numbers of a half of a step's state. */

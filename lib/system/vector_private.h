@@ -3,7 +3,9 @@
    SPDX-License-Identifier: GPL-3.0-or-later
 
    In sums of several terms GCC keeps an array of lanes in memory, and one
-   operation waits for the other to be stored; a vector it keeps in a register.
+   operation waits for the other to be stored; a vector it keeps in a register,
+   unless it is longer than those of the processor: so two of them are a block of
+   lanes, and processors without AVX-512 keep them, too.
    Arithmetic is that of its lanes, on any processor.
 
    This header needs <nevh/simd.h> and the C library alone. */
@@ -19,7 +21,7 @@
 #ifdef __GNUC__
 #define NEVH__HAS_VECTOR 1
 typedef double nevh__vector
-    __attribute__((vector_size(NEVH__LANES * sizeof(double)),
+    __attribute__((vector_size(NEVH__LANES / 2 * sizeof(double)),
                    aligned(sizeof(double)), may_alias));
 #else
 typedef double nevh__vector;

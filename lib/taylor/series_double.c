@@ -29,7 +29,7 @@ NEVH__INLINE void store(series *s, size_t k) {
    for them. */
 NEVH__INLINE void add_up(series *s, size_t k) {
     size_t lanes = s->of->lanes;
-    for (size_t from = 0; from < lanes; from += NEVH__LANES) {
+    for (size_t from = 0; from < lanes; from += NEVH__IN_VECTOR) {
         const double *x = s->rows_a + from, *y = s->rows_b + from;
         const double *a = x + 2 * lanes, *b = y + (k - 2) * lanes;
         nevh__vector even = {0}, odd = {0};

@@ -466,8 +466,8 @@ TEST(elementary_same_bits) {
     for (size_t i = 0; i < count; i++) {
         const char *name = tried[i].name + strlen("take_");
         bool two = tried[i].two;
-        nevh__write_elementary(&steps, &nevh__four, name);
-        nevh__write_elementary(&steps, &nevh__eight, name);
+        nevh__elementary_call(&steps, &nevh__four, name);
+        nevh__elementary_call(&steps, &nevh__eight, name);
         nevh__write(&steps,
                     "void take_%s(const double *x, const double *y, "
                     "double *z) {\n(void)y;\n",
