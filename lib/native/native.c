@@ -329,7 +329,8 @@ static bool take_series(nevh_work *w, nevh__native *x) {
 
 /* A table for each vector of lanes. */
 static bool native_take_numbers(nevh__native *x, nevh__writer *text) {
-    size_t tables = text->by_lane ? text->width / NEVH__LANES : 1;
+    x->together = nevh__orbits_together(text);
+    size_t tables = text->by_lane ? text->width / x->together : 1;
     x->pitch = text->count;
     x->numbers = nevh__array(tables * x->pitch, sizeof *x->numbers);
     for (size_t i = 0; x->numbers && i < tables * x->pitch; i++)
@@ -344,8 +345,8 @@ void nevh__native_lane_take(nevh_work *w, size_t lane) {
     const nevh__native *x = w->native;
     for (size_t i = 0; x && i < x->own_count; i++) {
         const nevh__lane_numbers *own = &x->own[i];
-        x->numbers[lane / NEVH__LANES * x->pitch + own->first +
-                   lane % NEVH__LANES] = own->times * own->row[lane];
+        x->numbers[lane / x->together * x->pitch + own->first +
+                   lane % x->together] = own->times * own->row[lane];
     }
 }
 

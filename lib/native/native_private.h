@@ -40,6 +40,7 @@ typedef struct nevh__native {
     nevh__lane_numbers
         *own; /* of lanes: numbers are a table a vector of them */
     size_t own_count, pitch; /* pitch: of the tables */
+    size_t together;         /* lanes in a vector of orbits */
     size_t characters;       /* of its text */
     double *room; /* of states that are too long for the stack, or NULL */
     size_t kicks, drifts;   /* of a step */

@@ -135,7 +135,8 @@ void nevh__write_elementary_numbers(nevh__writer *w, const nevh__writer *text) {
                         functions[i].name, functions[i].name);
 }
 
-static void write_elementary_lanes(nevh__writer *w, int lanes,
+/* together: numbers of "wide" */
+static void write_elementary_lanes(nevh__writer *w, int lanes, int together,
                                    const unsigned calls[]) {
     static const nevh__lane_words two = {"couple", NULL, NULL, "couple_"};
     unsigned few = calls[OF_FOUR], wide = calls[OF_EIGHT];
@@ -145,17 +146,20 @@ static void write_elementary_lanes(nevh__writer *w, int lanes,
         write_lanes(w, &nevh__eight, 8, wide);
     } else if (lanes == 4) {
         write_lanes(w, &nevh__four, 4, few | wide);
-        write_by_parts(w, &nevh__eight, 2, &nevh__four, wide);
+        write_by_parts(w, &nevh__eight, together / 4, &nevh__four, wide);
     } else {
         write_lanes(w, &two, 2, few | wide);
         write_by_parts(w, &nevh__four, 2, &two, few);
-        write_by_parts(w, &nevh__eight, 4, &two, wide);
+        write_by_parts(w, &nevh__eight, together / 2, &two, wide);
     }
 }
 
 void nevh__write_prelude(nevh__writer *text) {
     nevh__writer all = {0};
     int lanes = nevh__vector_lanes();
+    int together = (int)nevh__orbits_together(text);
+    if (together < NEVH__LANES)
+        nevh__write_form(&all, "NEVH__FOUR_TOGETHER");
     nevh__write_lines(&all, nevh__compiled_formulas_text);
     nevh__write_lines(&all, nevh__formula_needs_text);
     if (lanes == 8)
@@ -166,7 +170,7 @@ void nevh__write_prelude(nevh__writer *text) {
                     "#ifndef __AVX2__\n#error no vectors of four\n#endif\n");
     text->elementary = all.used;
     nevh__write_elementary_numbers(&all, text);
-    write_elementary_lanes(&all, lanes, text->calls);
+    write_elementary_lanes(&all, lanes, together, text->calls);
     text->elementary = all.used - text->elementary;
     nevh__write(&all, "%s", text->text);
     free(text->text);

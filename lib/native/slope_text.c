@@ -171,12 +171,18 @@ static void list_points(const sum *s, stencil *x) {
     }
 }
 
-/* A block of no more than four points takes vectors of four. */
-static const nevh__lane_words *words_of(const stencil *x) {
-    return x->count - x->at > 4 ? &nevh__eight : &nevh__four;
+/* Points of a block. */
+static size_t most_points(void) {
+    return nevh__vector_lanes() < LANES ? LANES / 2 : LANES;
 }
+
+/* A block of no more than four points takes vectors of four. */
 static size_t slope_text_lanes_of(const stencil *x) {
-    return x->count - x->at > 4 ? LANES : 4;
+    return x->count - x->at > 4 ? most_points() : 4;
+}
+
+static const nevh__lane_words *words_of(const stencil *x) {
+    return slope_text_lanes_of(x) > 4 ? &nevh__eight : &nevh__four;
 }
 
 /* The point that is in a lane; those beyond the last repeat the first. */
@@ -245,7 +251,7 @@ static void name_in_block(nevh__writer *w, const nevh__formula_text *f,
 }
 
 static bool write_blocks(nevh__writer *w, stencil *x) {
-    for (x->at = 0; x->at < x->count; x->at += LANES) {
+    for (x->at = 0; x->at < x->count; x->at += most_points()) {
         nevh__formula_text f = {.tape = x->s->of.term->term->decl.params,
                                 .lanes = words_of(x),
                                 .variable = name_in_block,
@@ -315,11 +321,12 @@ static bool write_points(nevh__writer *w, stencil *x) {
 /* A point's name: one of a block's, or its own. */
 static void write_point(nevh__writer *w, const char *letter, unsigned first,
                         size_t at, bool wide, size_t k) {
-    nevh__write(w, "%s%u", letter, first + (unsigned)(wide ? at / LANES : at));
+    nevh__write(w, "%s%u", letter,
+                first + (unsigned)(wide ? at / most_points() : at));
     if (wide && *letter == 'x')
         nevh__write(w, "_%zu", k);
     if (wide)
-        nevh__write(w, "[%zu]", at % LANES);
+        nevh__write(w, "[%zu]", at % most_points());
 }
 
 static void write_weight(nevh__writer *w, double weight) {

@@ -94,6 +94,12 @@ void nevh__write_entry(nevh__writer *w) {
         nevh__write_lines(w, nevh__entry_text);
 }
 
+size_t nevh__orbits_together(const nevh__writer *w) {
+    bool any = nevh__has_lanes(w) && !w->loops && !(w->stages && w->by_lane);
+    return any && nevh__vector_lanes() < NEVH__LANES ? NEVH__LANES / 2
+                                                     : NEVH__LANES;
+}
+
 const char *nevh__number_type(const nevh__writer *w) {
     return nevh__has_lanes(w) ? "wide" : "double";
 }
@@ -131,7 +137,9 @@ static void write_program_needs(nevh__writer *w, size_t n, bool finite,
 }
 
 void nevh__write_needs(nevh__writer *w, size_t n, bool finite, bool sums) {
-    size_t lanes = w->width > 1 || w->loops ? NEVH__LANES : 1;
+    size_t lanes = w->stages ? NEVH__LANES : nevh__orbits_together(w);
+    if (w->width == 1 && !w->loops)
+        lanes = 1;
     size_t group = w->group && !w->loops ? w->group : 1;
     if (w->readable) {
         write_program_needs(w, n, finite, sums);

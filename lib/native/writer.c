@@ -106,7 +106,7 @@ static size_t place_of_own(nevh__writer *w, const double row[], double times) {
         w->own_room = room;
     }
     w->own[w->own_count++] = (nevh__lane_numbers){row, times, first};
-    for (size_t lane = 0; lane < NEVH__LANES; lane++)
+    for (size_t lane = 0; lane < nevh__orbits_together(w); lane++)
         nevh__writer_append(w, times * row[lane]);
     return first;
 }

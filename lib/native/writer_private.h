@@ -19,8 +19,8 @@ typedef struct {
     size_t count, first;
 } nevh__shared_numbers;
 
-/* Numbers that each of eight orbits has of its own, and where: `times` what a
-   row of all lanes says. */
+/* Numbers that each orbit of a vector has of its own, and where: `times` what a row of
+   all lanes says. */
 typedef struct {
     const double *row;
     double times;
@@ -114,6 +114,9 @@ void nevh__write_effect(nevh__writer *, const nevh_term *);
 static inline bool nevh__has_lanes(const nevh__writer *w) {
     return w->width > 1 || (w->stages && !w->readable);
 }
+/* Orbits in a vector of them: eight where the processor has vectors of eight, else four,
+   as GCC takes longer vectors than those of the processor through memory. */
+size_t nevh__orbits_together(const nevh__writer *);
 /* "double", or what stands side by side. */
 const char *nevh__number_type(const nevh__writer *);
 

@@ -20,9 +20,15 @@ _Static_assert(sizeof(double) == sizeof 1.0 && sizeof(size) == sizeof(void *),
 #define INFINITY __builtin_inf()
 #define NAN      __builtin_nan("")
 #define memcpy   __builtin_memcpy
+#ifdef NEVH__FOUR_TOGETHER
+typedef double wide __attribute__((vector_size(32), aligned(8)));
+#define ALL(x)    ((wide){x, x, x, x})
+#define EACH_LANE for (int lane = 0; lane < 4; lane++)
+#else
 typedef double wide __attribute__((vector_size(64), aligned(8)));
 #define ALL(x)    ((wide){x, x, x, x, x, x, x, x})
 #define EACH_LANE for (int lane = 0; lane < 8; lane++)
+#endif
 typedef double few __attribute__((vector_size(32), aligned(8)));
 #define ALL_FOUR(x)  ((few){x, x, x, x})
 #define EACH_OF_FOUR for (int lane = 0; lane < 4; lane++)

@@ -67,7 +67,7 @@ INLINE double nevh__roundoff(double sum, double a, double b) {
 typedef wide nevh__vector;
 #define NEVH__ONE_SHAPE
 #define NEVH__VECTOR_AT(x) (*(nevh__vector *)(x))
-enum { NEVH__IN_VECTOR = 8, NEVH__LANES = 8 };
+enum { NEVH__IN_VECTOR = sizeof(wide) / sizeof(double), NEVH__LANES = 8 };
 #define NEVH_LANES(i, width)                                                   \
     for (size_t i##_from = 0; i##_from < (width); i##_from += 8)               \
     _Pragma("GCC ivdep") for (size_t i = i##_from; i != i##_from + 8; i++)
@@ -82,9 +82,13 @@ enum { NEVH__IN_VECTOR = 1 };
 
 #if defined NEVH__STAGES || defined NEVH__WIDE
 INLINE bool is_bad(wide bad) {
+#ifdef NEVH__FOUR_TOGETHER
+    return (bad[0] + bad[1]) + (bad[2] + bad[3]) != 0;
+#else
     return ((bad[0] + bad[1]) + (bad[2] + bad[3])) +
                ((bad[4] + bad[5]) + (bad[6] + bad[7])) !=
            0;
+#endif
 }
 #else
 typedef double nevh__vector;

@@ -43,7 +43,7 @@ struct nevh__stage_judge_owner {
 /* dH/dp, dH/dq or both at the points of all stages. */
 NEVH__INLINE int nevh__stage_slopes(const nevh__stage_step *x, bool q, bool p) {
     const struct nevh__stage_owner *o = x->owner;
-    for (size_t from = 0; from < STRIDE; from += NEVH__LANES) {
+    for (size_t from = 0; from < STRIDE; from += NEVH__IN_VECTOR) {
         nevh__vector y[2 * DOF], slope[DOF];
         nevh__vector t = NEVH__VECTOR_AT(o->times + from);
         double *to = x->gradient + from;
