@@ -146,6 +146,18 @@ static const char includes[] = "#include <math.h>\n"
                                "#include <stdbool.h>\n"
                                "#include <stddef.h>\n";
 
+/* Around all functions. */
+static const char apart[] =
+    "/* gcc 12 contracts a*b - c beside d*e + f, as vectors, even with\n"
+    "   -ffp-contract=off. */\n"
+    "#if defined __FMA__ && !defined __clang__\n"
+    "#pragma GCC push_options\n"
+    "#pragma GCC optimize(\"no-tree-vectorize\")\n"
+    "#endif\n\n";
+static const char as_before[] = "\n#if defined __FMA__ && !defined __clang__\n"
+                                "#pragma GCC pop_options\n"
+                                "#endif\n";
+
 /* All that is C: what remains unused is left out. */
 static bool write_body(nevh__writer *body, nevh_work *work,
                        const nevh_program *p) {
@@ -177,11 +189,13 @@ bool nevh__write_program(nevh__writer *w, nevh_work *work,
     if (fine) {
         nevh__names_shorten(all.text);
         write_comment(w, work, p);
-        nevh__write(w, "%s%s%s#include <string.h>\n\n", includes,
+        nevh__write(w, "%s%s%s#include <string.h>\n\n%s", includes,
                     *body.calls ? "#include <stdint.h>\n" : "",
                     p->functions ? ""
-                                 : "#include <stdio.h>\n#include <stdlib.h>\n");
+                                 : "#include <stdio.h>\n#include <stdlib.h>\n",
+                    apart);
         fine = nevh__write_used(w, all.text);
+        nevh__write(w, "%s", as_before);
     }
     nevh__writer_free(&body);
     nevh__writer_free(&all);
