@@ -286,6 +286,10 @@ NEVH_API nevh_scene_equation nevh_scene_equation_at(const nevh_scene *,
    not written out.  NULL: it is no single formula (a list, an array, C code), i
    is out of range, or memory is out. */
 NEVH_API char *nevh_scene_equation_mathml(const nevh_scene *, size_t i);
+/* The i-th of the functions that these lines call, other than effects that are off,
+   and GSL computes: their last digits may differ between machines.  NULL when i is
+   out of range. */
+NEVH_API const char *nevh_scene_gsl_function(const nevh_scene *, size_t i);
 
 /* stop = FORMULA < VALUE, or with >: the text as written, or NULL, and whether
    a run is to end at a state. */

@@ -33,7 +33,7 @@ bool nevh__operation_is_smooth(unsigned operation) {
 }
 
 bool nevh__operation_is_special(unsigned operation) {
-    return operations[operation].kind == NEVH__KIND_SPECIAL;
+    return operations[operation].kind >= NEVH__KIND_SPECIAL;
 }
 
 /* The name of an operation as formulas here have it; COUNT: there is none. */

@@ -5,8 +5,8 @@
    ...):
 
    kind     ARITHMETIC; FUNCTION, analytic between its edges; KINK, with kinks or
-            jumps; SPECIAL, of GSL or of nevh: compiled text and Taylor series do
-            without
+            jumps; SPECIAL, compiled text and Taylor series do without; GSL, these
+            too, and what GSL computes may differ between machines in last digits
    name     in formulas
    value    the value y of arguments a and b.  Functions are called by
             NEVH__F(f) where they are elementary, by NEVH__L(f) where libm has
@@ -142,13 +142,13 @@
       .edge = "a a floor - 1 a a floor - - *",                                 \
       .jumps = true,                                                           \
       .at_edge = "floor(...), whose argument reaches a whole number,")         \
-    X(SPECIAL, BESSEL_J0, "bessel_j0", 1, NEVH__S(bessel_j0)(a),               \
+    X(GSL, BESSEL_J0, "bessel_j0", 1, NEVH__S(bessel_j0)(a),                   \
       NEVH__G(-nevh__bessel_j1(a)), 0, .usage = 0)                             \
-    X(SPECIAL, BESSEL_J1, "bessel_j1", 1, NEVH__S(bessel_j1)(a),               \
+    X(GSL, BESSEL_J1, "bessel_j1", 1, NEVH__S(bessel_j1)(a),                   \
       NEVH__G(nevh__bessel_j1_slope(a)), 0, .usage = 0)                        \
-    X(SPECIAL, ELLIPTIC_K, "elliptic_k", 1, NEVH__S(elliptic_k)(a),            \
+    X(GSL, ELLIPTIC_K, "elliptic_k", 1, NEVH__S(elliptic_k)(a),                \
       NEVH__G(nevh__elliptic_k_slope(a)), 0, .usage = 0)                       \
-    X(SPECIAL, ELLIPTIC_E, "elliptic_e", 1, NEVH__S(elliptic_e)(a),            \
+    X(GSL, ELLIPTIC_E, "elliptic_e", 1, NEVH__S(elliptic_e)(a),                \
       NEVH__G(nevh__elliptic_e_slope(a)), 0, .usage = 0)                       \
     X(SPECIAL, ECCENTRIC, "kepler", 2, NEVH__S(kepler)(a, b),                  \
       NEVH__G(nevh__kepler_slope(y, b)),                                       \

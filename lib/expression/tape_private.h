@@ -48,7 +48,8 @@ typedef enum {
     NEVH__KIND_ARITHMETIC,
     NEVH__KIND_FUNCTION,
     NEVH__KIND_KINK,
-    NEVH__KIND_SPECIAL
+    NEVH__KIND_SPECIAL,
+    NEVH__KIND_GSL
 } nevh__operation_kind;
 
 /* A formula {numerator, denominator}; numerator NULL: not known; denominator

@@ -62,6 +62,37 @@ nevh_scene_equation nevh_scene_equation_at(const nevh_scene *s, size_t i) {
                                  .on = !effect || effect->on};
 }
 
+/* True if a text has a word, and then a parenthesis. */
+static bool calls(const char *text, const char *word) {
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyz"
+                                  "ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
+    size_t bytes = strlen(word);
+    for (const char *at = text; (at = strstr(at, word)); at += bytes) {
+        const char *after = at + bytes + strspn(at + bytes, " \t");
+        bool begins = at == text || (!strchr(letters, at[-1]) &&
+                                     (unsigned char)at[-1] < 0x80);
+        if (begins && *after == '(')
+            return true;
+    }
+    return false;
+}
+
+const char *nevh_scene_gsl_function(const nevh_scene *s, size_t i) {
+    for (unsigned f = 0; f < NEVH__OPERATION_COUNT; f++) {
+        const nevh__operation_traits *o = nevh__operation_of(f);
+        bool called = false;
+        for (size_t k = 0; o->kind == NEVH__KIND_GSL && !called; k++) {
+            nevh_scene_equation line = nevh_scene_equation_at(s, k);
+            if (!line.section)
+                break;
+            called = line.on && calls(line.value, o->name);
+        }
+        if (called && i-- == 0)
+            return o->name;
+    }
+    return NULL;
+}
+
 /* One formula, after which nothing or a setting follows: "0 ; period 2*pi". */
 static nevh__tree *parse(const nevh__statement *one) {
     const char *text = one->value.text;

@@ -36,7 +36,7 @@ static int derive_out_of_memory(const reader *r) {
 
 /* NULL: its series is known, up to its edge if it has one. */
 static const char *why_not(const nevh__instruction *c) {
-    return nevh__operation_of(c->operation)->kind == NEVH__KIND_SPECIAL
+    return nevh__operation_is_special(c->operation)
                ? "is one whose recurrence is not known here"
                : NULL;
 }

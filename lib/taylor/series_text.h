@@ -139,6 +139,7 @@ NEVH__INLINE void add_summands(const series *s, const nevh__batch *b) {
     CASE_##kind(identifier, value)
 #define CASE_ARITHMETIC(identifier, value)
 #define CASE_SPECIAL(identifier, value)
+#define CASE_GSL(identifier, value)
 #define CASE_KINK(identifier, value)
 #define CASE_FUNCTION(identifier, value)                                       \
     case NEVH__##identifier:                                                   \

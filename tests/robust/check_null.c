@@ -251,6 +251,7 @@ static nevh_separability separability;
     X(NUMBER, nevh_scene_equation_count, (NULL))                               \
     X(ANY, nevh_scene_equation_at, (NULL, 0))                                  \
     X(POINTER, nevh_scene_equation_mathml, (NULL, 0))                          \
+    X(POINTER, nevh_scene_gsl_function, (NULL, 0))                             \
     X(ANY, nevh_scene_part_at, (NULL, 0))                                      \
     X(STATUS, nevh_scene_part_values, (NULL, 0, 0.1, in, in, out))             \
     X(NUMBER, nevh_scene_stops, (NULL))                                        \

@@ -103,6 +103,9 @@ nevh_stepper *plan_first(const plan *, const char **name);
 bool plan_fits(const plan *, const char **name);
 /* Notes, for plans with several integrators or dt, which one is used. */
 void plan_note_first(const plan *, const char *integrator, list *notes);
+/* Notes why last digits of runs by these integrators may differ between machines, if
+   they may. */
+void plan_note_digits(const plan *, const list *integrators, list *notes);
 /* Title, effects, structure of H, span. */
 void plan_notes(const plan *, list *notes);
 char *plan_structure(const plan *);

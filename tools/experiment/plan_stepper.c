@@ -1,6 +1,7 @@
 /* nevh: the steppers of a plan, and what they are made with.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plan.h"
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -142,6 +143,42 @@ bool plan_fits(const plan *p, const char **name) {
     return fits;
 }
 
+static char *gsl_functions(const plan *p) {
+    const char *name;
+    list names = {0};
+    for (size_t i = 0; (name = nevh_scene_gsl_function(p->scene, i)); i++)
+        list_add(&names, name);
+    return list_joined(&names);
+}
+
+void plan_note_digits(const plan *p, const list *integrators, list *notes) {
+    list gsl = {0}, wide = {0}, parts = {0};
+    char *functions = gsl_functions(p);
+    if (*functions)
+        list_add(&gsl, functions);
+    for (size_t i = 0; i < integrators->count; i++) {
+        bool transformed;
+        const char *name = integrators->item[i];
+        const nevh_integrator *x = plan_scheme(p, name, &transformed);
+        bool finest =
+            x == nevh_taylor && p->tolerances && p->tolerance[0] < DBL_EPSILON;
+        if (strncmp(name, "gsl-", 4) == 0)
+            list_add(&gsl, name);
+        else if (finest || nevh_integrator_needs(x) & NEVH_PARTS)
+            list_add(&wide, name);
+    }
+    if (gsl.count)
+        list_print(&parts, "GSL computes %s", list_joined(&gsl));
+    if (wide.count)
+        list_print(&parts, "%s %s long double", list_joined(&wide),
+                   wide.count > 1 ? "take" : "takes");
+    if (text_adopt(nevh_scene_code_path(p->scene, 0)))
+        list_add(&parts, "effects in C may call the C library");
+    if (parts.count)
+        list_print(notes, "Last digits may differ between machines: %s",
+                   list_sentence(&parts, "and"));
+}
+
 void plan_note_first(const plan *p, const char *integrator, list *notes) {
     list_print(notes, "integrator: %s, dt = %.9g%s", integrator, p->dt[0],
                p->integrators.count > 1 || p->dts > 1
@@ -157,4 +194,7 @@ void plan_note_first(const plan *p, const char *integrator, list *notes) {
                    p->tolerances > 1 ? ", the first of the list" : "");
     list_print(notes, "gradient: %s%s", p->gradients.item[0],
                p->gradients.count > 1 ? ", the first of the list" : "");
+    list one = {0};
+    list_add(&one, integrator);
+    plan_note_digits(p, &one, notes);
 }

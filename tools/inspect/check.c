@@ -317,6 +317,7 @@ static int check_plan(const options *o, const plan *p) {
     trial_run ahead = trial_run_new(p, true);
     if (!o->quiet || !is_table) {
         plan_notes(p, &result.before);
+        plan_note_digits(p, &p->integrators, &result.before);
         energy_notes(p, &result.before);
         ahead.rough = probe_notes(p, &result.before) == SMOOTHNESS_NONE;
         trial_run_words(p, &ahead, &result.before);
