@@ -118,9 +118,14 @@ bench-lanes: all
 	NEVH_SCENES=$(srcdir)/scenes $(SHELL) $(srcdir)/bench/lanes.sh \
 	  ./tools/nevh$(EXEEXT)
 
-EXTRA_DIST += bench/ensembles.py bench/promises.py bench/certain.py bench/lanes.sh bench/speedup.sh bench/recommend.sh bench/answers.sh bench/integrable.sh bench/exponents.sh bench/exponents bench/orbits bench/textbook \
+# Whether states are the same bits however they are made: hours, or SCHEMES=, FORMS=.
+bench-hashes: all
+	NEVH_SCENES=$(srcdir)/scenes $(SHELL) $(srcdir)/bench/hashes.sh \
+	  ./tools/nevh$(EXEEXT)
+
+EXTRA_DIST += bench/hashes.sh bench/ensembles.py bench/promises.py bench/certain.py bench/lanes.sh bench/speedup.sh bench/recommend.sh bench/answers.sh bench/integrable.sh bench/exponents.sh bench/exponents bench/orbits bench/textbook \
 	bench/blind bench/kinks
 CLEANFILES += bench/results-answers.csv bench/verdicts$(EXEEXT) bench/wrong-verdicts
 DISTCLEANFILES = bench/long-runs
-.PHONY: bench bench-brouwer bench-certain bench-ensembles bench-fit bench-counts bench-lanes bench-peers bench-recommend bench-speedup \
+.PHONY: bench bench-brouwer bench-certain bench-ensembles bench-fit bench-counts bench-hashes bench-lanes bench-peers bench-recommend bench-speedup \
   bench-verdicts
