@@ -34,6 +34,8 @@ function check(a, b, side, eye, i, distance) {
     if (a == b || (a, b) in checked) return
     checked[a, b]; checked[b, a]
     pairs++
+    if (look[a] % colours == look[b] % colours)
+        print a, b, "share a colour"
     for (side = 1; side <= 2; side++)
         for (i = 1; i <= 4; i++) {
             eye = eyes[i]
@@ -63,8 +65,8 @@ BEGIN {
 }
 /^    X\("#/ { split($0, field, "\""); colour[1, colours + 0] = field[2]; colour[2, colours++ + 0] = field[4]; next }
 /^    X\("/ { split($0, field, "\""); look[field[2]] = looks++; often[looks] = field[2]; next }
-/^integrators *=/ {
-    sub(/.*= */, ""); gsub(/ /, "")
+/^integrators *=|--integrators [a-z]/ {
+    sub(/.*(= *|--integrators )/, ""); sub(/, +/, ",", $0); sub(/ .*/, "")
     n = split($0, name, ",")
     for (i = 1; i <= n; i++)
         for (k = 1; k < i; k++)
@@ -81,7 +83,7 @@ END {
 }
 END
 seen() { # LOOKS
-    awk -f $work/looks.awk "$1" "$srcdir"/scenes/*.nevh >$work/out
+    awk -f $work/looks.awk "$1" "$srcdir"/scenes/*.nevh "$srcdir"/doc/sheets/*.texi >$work/out
 }
 seen "$srcdir/tools/plot/looks.h"
 test -s $work/out && { fails "are alike"; cat $work/out; }

@@ -51,8 +51,8 @@
     X("taylor")                                                                \
     X("adaptive-verlet")                                                       \
     X("dopri5")                                                                \
-    X("tao4")                                                                  \
     X("symplectic-euler-a")                                                    \
+    X("tao4")                                                                  \
     X("pefrl")                                                                 \
     X("blanes-moan6")                                                          \
     X("gauss12")                                                               \
@@ -96,8 +96,8 @@
     X("gsl-msadams")                                                           \
     X("aba864")                                                                \
     X("wisdom-holman")                                                         \
-    X("saba2")                                                                 \
     X("respa")                                                                 \
+    X("saba2")                                                                 \
     X("saba3")                                                                 \
     X("saba4")                                                                 \
     X("aba84")                                                                 \
