@@ -58,6 +58,18 @@ grep -q 'measured' $work/phase.gp || fails "draws no points"
 exits 0 run pendulum-filmed --data pendulum-filmed.csv \
     --plot-kind phase --columns x:y --keep-plot-script $work/phase.gp
 test "$(held $work/phase.gp)" = 121 || fails "cuts points off: $(held $work/phase.gp) of 121"
+# One that is far off does not stretch the axes, and is counted.
+awk -F, -v OFS=, 'NR == 30 { $2 = 25 } { print }' "$srcdir/scenes/pendulum-filmed.csv" \
+    >$work/outlier.csv
+for kind in 'phase --columns x:y' time; do
+    exits 0 run pendulum-filmed --data $work/outlier.csv --plot-kind $kind \
+        --keep-plot-script $work/outlier.gp
+    awk '/^set [xy]range/ { split($3, r, ":"); if ($2 == "yrange" || !time)
+            if (r[2] + 0 > most) most = r[2] + 0 }
+        END { exit !(most > 0 && most < 2) }' time=$(test "$kind" = time && echo 1 || echo 0) \
+        $work/outlier.gp || fails "stretches an axis of $kind to an outlier"
+    grep -q '1 measured outlier outside' $work/outlier.gp || fails "counts no outlier"
+done
 exits 2 run pendulum-filmed --data pendulum-filmed.csv --plot-kind phase \
     --keep-plot-script $work/none.gp
 says 'plot-kind phase draws over each other'

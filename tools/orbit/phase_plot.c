@@ -85,8 +85,8 @@ static void draw_orbit(plot *to, const orbit *o, size_t k, double period) {
 }
 
 /* A row of panels. */
-static void draw_panels(plot **to, const run_picture *picture,
-                        const column_panels *c, size_t number) {
+static void draw_panels(plot **to, run_picture *picture, const column_panels *c,
+                        size_t number) {
     size_t k = 2 * number;
     char *x = column_label(&picture->plan, &c->columns.item[k]);
     char *y = column_label(&picture->plan, &c->columns.item[k + 1]);

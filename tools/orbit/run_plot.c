@@ -167,22 +167,41 @@ char *picture_cut(run_picture *picture, double turns, double wanted) {
     return text_print("a part of the run: --t-end %g shows all", whole);
 }
 
-void picture_hold_measured(const run_picture *picture, const char *x,
-                           const char *y, picture_range *across,
-                           picture_range *up) {
+/* Outliers are farther from the quartiles than three times what is between these: J. W.
+   Tukey, Exploratory Data Analysis (1977), calls them "far out". */
+void picture_widen_measured(run_picture *picture, const char *column,
+                            picture_range *r) {
+    static const double far = 3;
     const measured *m = &picture->data;
-    size_t column[] = {measured_find(m, x), measured_find(m, y)};
-    picture_range *of[] = {across, up};
-    if (column[0] == m->columns || column[1] == m->columns)
+    size_t k = measured_find(m, column), count = 0;
+    if (k == m->columns || !m->points)
         return;
-    for (size_t k = 0; k < 2; k++) {
-        double more = picture_room * (of[k]->high - of[k]->low);
-        for (size_t i = 0; i < m->points; i++) {
-            double value = m->value[i * m->columns + column[k]];
-            of[k]->low = fmin(of[k]->low, value - more);
-            of[k]->high = fmax(of[k]->high, value + more);
+    double *sorted = tool_allocate(m->points, sizeof *sorted);
+    for (size_t i = 0; i < m->points; i++)
+        if (isfinite(m->value[i * m->columns + k]))
+            sorted[count++] = m->value[i * m->columns + k];
+    numbers_sort(sorted, count);
+    double first = count ? sorted[count / 4] : 0;
+    double third = count ? sorted[3 * count / 4] : 0;
+    double low = fmin(r->low, first - far * (third - first));
+    double high = fmax(r->high, third + far * (third - first));
+    double more = picture_room * (r->high - r->low);
+    for (size_t i = 0; i < count; i++)
+        if (third > first && (sorted[i] < low || sorted[i] > high)) {
+            picture->outside++;
+        } else {
+            r->low = fmin(r->low, sorted[i] - more);
+            r->high = fmax(r->high, sorted[i] + more);
         }
-    }
+}
+
+void picture_hold_measured(run_picture *picture, const char *x, const char *y,
+                           picture_range *across, picture_range *up) {
+    const measured *m = &picture->data;
+    if (measured_find(m, x) == m->columns || measured_find(m, y) == m->columns)
+        return;
+    picture_widen_measured(picture, x, across);
+    picture_widen_measured(picture, y, up);
 }
 
 void picture_measured(const run_picture *picture, plot *to, const char *name,
@@ -234,6 +253,10 @@ void picture_note(const run_picture *picture, plot *to, const char *more) {
     char *text = text_print("%s%s%s", *others ? "not drawn: " : "", others,
                             *others && *more ? "; " : "");
     text_extend(&text, "%s", more);
+    if (picture->outside)
+        text_extend(&text, "%s%zu measured outlier%s outside",
+                    *text ? "; " : "", picture->outside,
+                    picture->outside == 1 ? "" : "s");
     plot_note_run(to, &picture->plan, scheme, text);
 }
 

@@ -16,6 +16,7 @@ typedef struct {
         reference; /* without an integrator; without rows where there is none */
     const row_times *rows; /* asked for by options; NULL: by the picture */
     measured data;         /* of no points where there are none */
+    size_t outside;        /* measured numbers that no panel shows */
     bool quiet;            /* failures are not printed */
 } run_picture;
 
@@ -74,8 +75,11 @@ typedef struct {
 picture_range picture_extent(const run_picture *, const size_t columns[],
                              size_t count);
 
-/* Widens the ranges of a panel so that no measured point of these columns is cut off. */
-void picture_hold_measured(const run_picture *, const char *x, const char *y,
+/* Widens the range so that no measured number of the column is cut off, but for
+   outliers, which would stretch the axis; adds these to `outside`. */
+void picture_widen_measured(run_picture *, const char *column, picture_range *);
+/* The same of the ranges of a panel where both columns were measured. */
+void picture_hold_measured(run_picture *, const char *x, const char *y,
                            picture_range *across, picture_range *up);
 
 /* Each makes a plot; NULL, with a message printed, where it cannot. */

@@ -202,6 +202,23 @@ static double last_time(const run_picture *picture) {
     return early && last != run->t_start ? last : end;
 }
 
+/* Outliers do not stretch the axis of what the panel shows. */
+static void limit_measured(plot *to, run_picture *picture,
+                           const column_panels *c, size_t panel) {
+    size_t before = picture->outside;
+    picture_range all = {INFINITY, -INFINITY};
+    for (size_t k = 0; k < c->columns.count; k++) {
+        if (c->panel[k] != panel)
+            continue;
+        picture_range shown = picture_extent(picture, &k, 1);
+        picture_widen_measured(picture, c->columns.item[k].name, &shown);
+        all.low = fmin(all.low, shown.low);
+        all.high = fmax(all.high, shown.high);
+    }
+    if (picture->outside > before)
+        plot_limit_y(to, all.low, all.high);
+}
+
 static void draw_panel(plot **to, run_picture *picture, column_panels *c,
                        size_t panel, bool exact) {
     char *x = plot_label(&picture->plan, "t", "t");
@@ -219,6 +236,7 @@ static void draw_panel(plot **to, run_picture *picture, column_panels *c,
         for (size_t i = 0; i < picture->orbits.count && c->panel[k] == panel;
              i++)
             draw_orbit(*to, picture, c, k, i, exact);
+    limit_measured(*to, picture, c, panel);
     for (size_t k = 0; k < c->columns.count; k++) {
         size_t count;
         place_in_panel(c, k, &count);
