@@ -62,4 +62,11 @@ exits 2 cost pendulum --against length --by energy --observable phi
 exits 0 cost pendulum --against length --t-end 100 --integrators verlet,rk4 \
     --plot $work/length.svg
 grep -q 'end of the run' $work/length.svg || fails "the picture does not name its axis"
+
+# Parts that solve H have no order: they are in no picture, and lead nowhere.
+exits 0 cost kepler --against length --t-end 20 --integrators verlet,wisdom-holman,rk4 \
+    --plot $work/exact.svg
+has '^ wisdom-holman .* exact .* -  '
+lacks '[*].*exact|wisdom-holman errs less'
+grep -q rk4 $work/exact.svg && ! grep -q wisdom $work/exact.svg || fails "draws exact steps"
 exit $status

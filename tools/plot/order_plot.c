@@ -203,14 +203,19 @@ static curve curve_of(const rows_drawn *d, size_t first, error_of *error) {
     return c;
 }
 
+/* True once a scheme; its parts do not solve H, which leaves rounding at any step. */
+static bool is_drawn(const plan *p, const rows_drawn *d, size_t i) {
+    return is_first(d->row, i) && !plan_is_exact(p, d->row[i].scheme);
+}
+
 /* The kinds of errors that some scheme has at two steps. */
-static size_t find_kinds(const rows_drawn *d, size_t kinds[]) {
+static size_t find_kinds(const plan *p, const rows_drawn *d, size_t kinds[]) {
     size_t found = 0;
     for (size_t k = 0; k < ERRORS; k++) {
         bool drawn = false;
         for (size_t i = 0; i < d->count && !drawn; i++) {
             curve c = curve_of(d, i, errors[k].of);
-            drawn = is_first(d->row, i) && c.count > 1;
+            drawn = is_drawn(p, d, i) && c.count > 1;
         }
         if (drawn)
             kinds[found++] = k;
@@ -262,7 +267,7 @@ static void draw_panel(plot *to, const plan *p, const rows_drawn *d,
                        const size_t kinds[], size_t panels, size_t panel) {
     for (size_t i = 0; i < d->count; i++) {
         curve curves[ERRORS];
-        if (!is_first(d->row, i))
+        if (!is_drawn(p, d, i))
             continue;
         for (size_t k = 0; k < panels; k++)
             curves[k] = curve_of(d, i, errors[kinds[k]].of);
@@ -292,7 +297,7 @@ static void add_note(plot *to, const plan *p, const rows_drawn *d) {
 int order_plot(const options *o, const plan *p, const row rows[], size_t count,
                order_axis axis) {
     rows_drawn d = {rows, count, axis};
-    size_t kinds[ERRORS], panels = find_kinds(&d, kinds);
+    size_t kinds[ERRORS], panels = find_kinds(p, &d, kinds);
     plot *to = NULL;
     if (panels == 0)
         return tool_refuse("there is nothing to plot: no scheme has errors "

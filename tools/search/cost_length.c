@@ -29,9 +29,16 @@ static double error_at(const lengths *l, size_t scheme, size_t k) {
     return study_error(row_at(l, scheme, k));
 }
 
+/* True if its parts solve H: its errors are of rounding, whatever the step. */
+static bool is_exact(const lengths *l, size_t scheme) {
+    return plan_is_exact(&l->plan, row_at(l, scheme, 0)->scheme);
+}
+
 /* The power of the length that the error grows with, by the two longest runs; NAN
    where their errors are of rounding, or as large as the motion. */
 static double growth(const lengths *l, size_t scheme) {
+    if (is_exact(l, scheme))
+        return NAN;
     double before = error_at(l, scheme, LENGTHS - 2);
     double last = error_at(l, scheme, LENGTHS - 1);
     return fmin(before, last) > rounding && fmax(before, last) < useless
@@ -82,9 +89,10 @@ static int run_lengths(lengths *l, const options *o) {
 }
 
 static size_t best_at(const lengths *l, size_t k) {
-    size_t best = 0;
-    for (size_t i = 1; i < l->schemes; i++)
-        if (error_at(l, i, k) < error_at(l, best, k))
+    size_t best = l->schemes;
+    for (size_t i = 0; i < l->schemes; i++)
+        if (!is_exact(l, i) &&
+            (best == l->schemes || error_at(l, i, k) < error_at(l, best, k)))
             best = i;
     return best;
 }
@@ -93,10 +101,11 @@ static char *digits_text(const lengths *l, size_t scheme, size_t k) {
     const row *r = row_at(l, scheme, k);
     double error = error_at(l, scheme, k);
     const char *star = best_at(l, k) == scheme ? "*" : " ";
-    return !r->ran        ? text_print("  %s", r->failed ? "fails" : "refused")
-           : isinf(error) ? text_print("  -")
-           : error == 0   ? text_print("%s all", star)
-                          : text_print("%s %.1f", star, fmax(0, -log10(error)));
+    return !r->ran ? text_print("  %s", r->failed ? "fails" : "refused")
+           : is_exact(l, scheme) ? text_print("  exact")
+           : isinf(error)        ? text_print("  -")
+           : error == 0          ? text_print("%s all", star)
+                        : text_print("%s %.1f", star, fmax(0, -log10(error)));
 }
 
 static table *table_of(const lengths *l) {
@@ -225,7 +234,7 @@ static void crossing_word(const lengths *l, size_t from, size_t to,
 static void crossing_words(const lengths *l, list *words) {
     for (size_t i = 0; i < l->schemes; i++)
         for (size_t j = 0; j < l->schemes; j++)
-            if (i != j &&
+            if (i != j && !is_exact(l, i) && !is_exact(l, j) &&
                 row_at(l, i, 0)->gradient == row_at(l, j, 0)->gradient)
                 crossing_word(l, i, j, words);
 }
@@ -247,6 +256,12 @@ static page page_of(const lengths *l, const options *o) {
         list_add(&result.before,
                  "schemes that choose their steps are left out: their work is "
                  "not matched");
+    for (size_t i = 0; i < l->schemes; i++)
+        if (is_exact(l, i))
+            list_print(&result.before,
+                       "%s: the parts solve this H exactly with any step, so "
+                       "that there is no error to rank or to draw",
+                       row_at(l, i, 0)->integrator);
     row_notes(o, &l->plan, l->row, l->schemes * LENGTHS, &result.before);
     state_notes(&l->plan, &result.before);
     observable_notes(&l->plan, &result.before);

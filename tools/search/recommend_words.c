@@ -128,6 +128,13 @@ static void size_words(const recommendation *a, const row *r, list *words) {
 /* In the orbit's own measure. */
 static void step_words(const recommendation *a, const row *r, list *words) {
     const plan *p = &a->search.plan;
+    if (a->best->exact) {
+        list_print(words,
+                   "The parts of %s solve this H exactly with any step: its "
+                   "error is of rounding.",
+                   r->integrator);
+        return;
+    }
     double steps = a->period / r->dt;
     bool at_start = a->period_at == p->run->t_start;
     char *where = at_start ? text_print("at the start")
