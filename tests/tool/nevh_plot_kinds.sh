@@ -162,4 +162,17 @@ exits 1 run double-pendulum --integrators rk4,midpoint --dt 0.1 --t-end 5 \
     --plot-kind animation --plot $work/out.gif --keep-plot-script $work/out.gp
 grep -q 'midpoint, ended at t = [0-9]' $work/out.gp || fails "does not say that it ended"
 
+
+# Names stand near what they name, and letters can be read at a width of 480 pixels.
+exits 0 run outer-solar-system --plot-kind configuration --plot $work/planets.svg
+sed -n "s/^<path stroke='#999999' stroke-width='.8' d='M\(.*\) \(.*\)L\(.*\) \(.*\)'.*/\1 \2 \3 \4/p" \
+    $work/planets.svg >$work/far
+awk '{ d = sqrt(($1 - $3)^2 + ($2 - $4)^2); if (d > 40) exit 1 }' $work/far ||
+    fails "puts the name of a planet far from it"
+test "$(grep -c '>Jupiter</text>' $work/planets.svg)" = 2 || fails "names no planet"
+awk 'NR == 1 { match($0, /viewBox=.0 0 [0-9]+/); width = substr($0, RSTART + 13, RLENGTH - 13) }
+    /^<text.*fill=.#444444/ { match($0, /font-size=.[0-9.]+/)
+        size = RLENGTH > 0 ? substr($0, RSTART + 11, RLENGTH - 11) : 14
+        if (480/width*size < 5.9) bad = 1; notes++ }
+    END { exit bad || !notes }' $work/planets.svg || fails "has a note of small letters"
 exit $status

@@ -97,8 +97,8 @@ static void choose_panels(layout *l, const plot *p, const target *t) {
     static const struct {
         size_t columns;
         double width, height;
-    } few[] = {{1, 640, 420}, {2, 400, 320}, {3, 320, 280}, {2, 400, 280}},
-      many = {3, 300, 230};
+    } few[] = {{1, 640, 420}, {2, 330, 280}, {3, 220, 220}, {2, 330, 240}},
+      many = {3, 220, 190};
     size_t last = sizeof few / sizeof *few;
     if (p->stacked) {
         l->columns = 1;
@@ -114,7 +114,7 @@ static void choose_panels(layout *l, const plot *p, const target *t) {
     }
     if (p->beside && !p->stacked) {
         l->columns = p->beside < p->panels ? p->beside : p->panels;
-        l->panel_width = fmax(fmin(960 / (double)l->columns, 400), 200);
+        l->panel_width = fmax(fmin(720 / (double)l->columns, 340), 200);
         l->panel_height = 0.8 * l->panel_width;
         if (p->panel->equal)
             shape_panel(l, p, l->panel_width);
@@ -189,7 +189,7 @@ static size_t title_letters(const layout *l) {
 }
 
 static size_t note_letters(const layout *l) {
-    double letter = l->letter == 1 ? 1 : 0.6 * PLOT_NOTE_FONT;
+    double letter = l->letter == 1 ? 1 : 0.6 * l->small;
     return (size_t)fmax(l->width / letter - 2, 20);
 }
 
@@ -224,8 +224,17 @@ static void set_panels(layout *l, const plot *p, const target *t) {
     }
 }
 
+/* Large enough to be read where a picture is 480 pixels wide, but smaller than the
+   title. */
+static double small_letters(const layout *l) {
+    static const double smallest = 11, readable = 7. / 480, less = 0.9;
+    double most = PLOT_FONT * fmin(less * l->title_scale, 1);
+    return fmax(fmin(readable * l->width, most), smallest);
+}
+
 static void set_title(layout *l, const plot *p, bool narrow) {
     l->title_scale = title_scale(p, l);
+    l->small = small_letters(l);
     l->title_lines = lines_of(p->title, title_letters(l),
                               narrow ? NARROW_LINES : TITLE_LINES);
     l->note_lines =
@@ -299,8 +308,12 @@ static text_line *add_lines(text_line *to, const char *text, size_t letters,
     letters = balanced(text, letters, lines);
     for (size_t i = 0; i < lines; i++) {
         size_t bytes = line_bytes(text, letters);
-        *to++ = (text_line){text, bytes, i + 1 == lines && text[bytes],
-                            first + apart * (double)i, size};
+        *to++ = (text_line){text,
+                            bytes,
+                            i + 1 == lines && text[bytes],
+                            false,
+                            first + apart * (double)i,
+                            size};
         text += bytes;
         text += *text == ' ';
     }
@@ -317,8 +330,11 @@ size_t plot_title_lines(const plot *p, const layout *l,
     text_line *end =
         add_lines(lines, p->title, title_letters(l), l->title_lines,
                   1.1 * l->line, apart, PLOT_FONT * l->title_scale);
+    text_line *note = end;
     end = add_lines(end, p->note, note_letters(l), l->note_lines, begin,
-                    (text ? 1 : 0.95) * l->line, PLOT_NOTE_FONT);
+                    (text ? 1 : 0.95) * l->line, l->small);
+    for (; note < end; note++)
+        note->note = true;
     return (size_t)(end - lines);
 }
 

@@ -127,8 +127,7 @@ void plot_script(const plot *, const target *, FILE *);
 /* plot_layout.c */
 enum {
     PLOT_LONGEST_NAME = 48,
-    PLOT_FONT = 14, /* pixels */
-    PLOT_NOTE_FONT = 11,
+    PLOT_FONT = 14,      /* pixels */
     PLOT_MOST_LINES = 18 /* of the title and the note */
 };
 /* Lengths in pixels, or in letters and lines of text. */
@@ -140,8 +139,9 @@ typedef struct {
     size_t columns, rows;
     size_t title_lines, note_lines;
     double title_scale; /* of its letters */
-    bool legend_apart;  /* it is longer than a panel */
-    bool narrow;        /* the legend is below, labels of y axes above */
+    double small;      /* letters of the note, and of names in panels: pixels */
+    bool legend_apart; /* it is longer than a panel */
+    bool narrow;       /* the legend is below, labels of y axes above */
     double legend_height;
 } layout;
 /* The axes of a panel. */
@@ -162,7 +162,7 @@ pair plot_legend_at(const layout *);
 typedef struct {
     const char *text;
     size_t bytes;
-    bool cut;
+    bool cut, note;
     double middle, size; /* middle: from the top */
 } text_line;
 size_t plot_title_lines(const plot *, const layout *,
@@ -230,6 +230,7 @@ int plot_look_mark(size_t look);
    returns  how many have a place */
 typedef struct {
     double left, right, middle;
+    double letter; /* its size */
     const char *text;
     bool far; /* from the point that it names: a line joins them, */
     pair from, to;

@@ -150,9 +150,7 @@ static void print_title(FILE *f, const plot *p, const layout *l) {
                         lines[i].cut ? " ..." : "");
         fprintf(f, " at screen 0.5,%.6f center noenhanced %sfont ',%.3g'\n",
                 1 - lines[i].middle / l->height,
-                lines[i].size == PLOT_NOTE_FONT ? "textcolor rgb '#444444' "
-                                                : "",
-                lines[i].size);
+                lines[i].note ? "textcolor rgb '#444444' " : "", lines[i].size);
     }
 }
 

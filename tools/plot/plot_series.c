@@ -130,9 +130,9 @@ void plot_script_guides(FILE *f, const plot *p, size_t number,
         plot_quote(f, names[i].text, PLOT_LONGEST_NAME);
         fprintf(f,
                 " at graph %.6f,%.6f left noenhanced "
-                "textcolor rgb '#777777' font ',%d'\n",
+                "textcolor rgb '#777777' font ',%.3g'\n",
                 names[i].left / l->panel_width,
-                names[i].middle / l->panel_height, PLOT_NOTE_FONT);
+                names[i].middle / l->panel_height, names[i].letter);
         if (names[i].far)
             fprintf(f,
                     "set arrow from graph %.6f,%.6f to graph %.6f,%.6f nohead "

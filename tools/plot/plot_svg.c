@@ -76,8 +76,7 @@ static void put_titles(FILE *f, const plot *p, const layout *l) {
     for (size_t i = 0; i < count; i++) {
         const text_line *line = &lines[i];
         begin_text(f, l->width / 2, line->middle + middle_line * line->size,
-                   MIDDLE, line->size,
-                   line->size == PLOT_NOTE_FONT ? "#444444" : NULL);
+                   MIDDLE, line->size, line->note ? "#444444" : NULL);
         put_letters(f, line->text, line->bytes);
         fputs(line->cut ? " ...</text>\n" : "</text>\n", f);
     }
@@ -166,8 +165,8 @@ static void put_guides(FILE *f, const plot *p, size_t number, pair at,
         fputs("<g paint-order='stroke' stroke='#ffffff' stroke-width='3'>", f);
         put_text(f, at.x + names[i].left,
                  at.y + l->panel_height - names[i].middle +
-                     middle_line * PLOT_NOTE_FONT,
-                 START, PLOT_NOTE_FONT, "#777777", text);
+                     middle_line * names[i].letter,
+                 START, names[i].letter, "#777777", text);
         fputs("</g>\n", f);
         if (names[i].far)
             fprintf(f,
