@@ -221,4 +221,10 @@ exits 2 effects $work/needed.nevh --needed x
 says 'needs --error'
 exits 2 effects $work/needed.nevh --needed xx --error 1e-3
 says 'xx'
+
+# An orbit that leaves without an effect does not make the other flat.
+exits 0 effects kepler --impact --t-end 100 --plot $work/impact.svg
+sed -n "s/^<text .*text-anchor='end'>\([0-9.-]*\)<.*/\1/p" $work/impact.svg >$work/heights
+awk '$1 > most { most = $1 } END { exit !(NR > 4 && most < 10) }' $work/heights ||
+    fails "shows an orbit without gravity up to $(sort -g $work/heights | tail -n 1)"
 exit $status

@@ -50,6 +50,22 @@ static size_t count_turns(const trace *o, size_t k, bool from_end) {
     return i;
 }
 
+/* Limits the axis to the range of the orbit with the effect in these times, and 1.5
+   times as much on either side: an orbit that leaves without it would make it flat. */
+static void limit_values(plot *to, const trace *with, size_t k, double begin,
+                         double end) {
+    static const double more = 1.5;
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < with->kept; i++)
+        if (time_of(with, i) >= begin && time_of(with, i) <= end) {
+            low = fmin(low, value(with, k, i));
+            high = fmax(high, value(with, k, i));
+        }
+    double room = more * (high - low);
+    if (room > 0)
+        plot_limit_y(to, low - room, high + room);
+}
+
 /* Times from the start, where the orbits part soon, else up to the end. */
 static void choose_span(plot *to, const trace dense[2], size_t k,
                         const difference *d) {
@@ -58,9 +74,11 @@ static void choose_span(plot *to, const trace dense[2], size_t k,
     double first = time_of(with, count_turns(with, k, false) - 1);
     size_t last = count_turns(with, k, true);
     if (d->since < first || first >= end)
-        plot_span_x(to, begin, first);
+        end = first;
     else
-        plot_span_x(to, time_of(with, with->kept - last), end);
+        begin = time_of(with, with->kept - last);
+    plot_span_x(to, begin, end);
+    limit_values(to, with, k, begin, end);
 }
 
 static void draw_orbit(plot *to, const trace *o, size_t k, const char *name,
