@@ -265,7 +265,18 @@ def mark_rows(room, given):
             sys.stderr.write("nevh: line %d: %s answers %s again; the last answer counts\n" % (
                 line, name, task))
         one[task] = verdict[0] == "right"
+    doubt_key(given.key, [row[3] for row in rows[1:] if row[3] != "missing"])
     return rows, right
+
+
+def doubt_key(key, verdicts):
+    """Asks whether the key is that of the sheets, where few of all answers are right."""
+    right = verdicts.count("right")
+    if len(verdicts) >= 4 and 4*right < len(verdicts):
+        sys.stderr.write("nevh: %d of %d answers %s right; %s\n" % (
+            right, len(verdicts), "is" if right == 1 else "are",
+            "is --key %s that of the sheets?" % key if key else
+            "sheets that were made with --key are marked with it"))
 
 
 def sums(right):
@@ -291,6 +302,8 @@ def run(given):
     if given.name is not None and not given.key and given.form != "form":
         raise Error("--for needs --key too, a word of yours: the numbers are drawn from it and "
                     "from the name")
+    if given.key and given.name is None:
+        raise Error("--key needs --for too: the numbers are drawn from it and from a name")
     names = [None] if given.name is None else names_of(given.name)
     chosen = numbers_of(given.number, sorted(room.quantities))
     if given.answers:
@@ -306,7 +319,8 @@ def run(given):
         return as_json([["text"], [made]]) if is_json else made
     folder, files = make_sheets(room, given, names, chosen)
     return as_json([["file"], *([file] for file in files)]) if is_json else \
-        "%d files are made in %s\n" % (len(files), folder)
+        "%d %s made in %s\n" % (len(files), "file is" if len(files) == 1 else "files are",
+                               folder)
 
 
 def is_one_page(given):

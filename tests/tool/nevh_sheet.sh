@@ -51,6 +51,8 @@ cmp -s $work/again/sheet-3-ada-lovelace.ipynb $work/ten/sheet-3-ada-lovelace.ipy
 exits 0 sheet 3 --for 'Ada Lovelace' --key 8 -o $work/other
 cmp -s $work/other/sheet-3-ada-lovelace.ipynb $work/ten/sheet-3-ada-lovelace.ipynb &&
     fails "gives the same numbers with another key"
+exits 0 sheet 3 --for 'Ada Lovelace' --key 8 --as page -o $work/one
+grep -q '^1 file is' $work/out || fails "has no singular"
 printf 'Ada\nada\n' >$work/twice
 exits 2 sheet 1 --for $work/twice --key 7 -o $work/no
 says 'the name ada twice'
@@ -102,8 +104,11 @@ test "$(grep -c ',right,' $work/out)" = $(($(wc -l <$work/right.csv) - 1)) ||
 sed 's/^Ada Lovelace/Carl Runge/' $work/right.csv >$work/copied.csv
 exits 0 mark $work/copied.csv --key 7 --format csv
 test "$(grep -c ',right,' $work/out)" -le 3 || fails "takes copied answers"
+exits 2 sheet 1 --key 7 -o $work/no
+says '--key needs --for'
 exits 0 mark $work/right.csv --key 8 --format csv
 test "$(grep -c ',right,' $work/out)" -le 3 || fails "takes answers of another key"
+says 'is --key 8 that of the sheets'
 
 answer() { awk -F, -v task=$1 '$2 == task { printf "%.6g\n", $3 }' $work/answers.${1%%.*}; }
 p=$(answer 1.1a) share=$(answer 5.2) length=$(answer 5.1a) error=$(answer 1.2a)
