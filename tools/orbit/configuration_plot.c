@@ -167,19 +167,9 @@ static void draw_bob(plot *to, const bob_list *b, size_t bob, const orbit *o,
     plot_point(to, series, at[0], at[1]);
 }
 
-/* NULL: the only one, which has none. */
-static char *bob_name(const bob_list *b, size_t bob) {
-    const char *given = nevh_scene_part_at(b->scene, b->part[bob]).name;
-    bool on_rods = b->count < nevh_scene_part_count(b->scene);
-    return given          ? text_print("%s", given)
-           : b->count < 2 ? NULL
-           : on_rods      ? text_print("bob %zu", bob + 1)
-                          : text_print("body %zu", bob + 1);
-}
-
 static void name_bob(plot *to, const bob_list *b, size_t bob,
                      const double at[2]) {
-    char *name = bob_name(b, bob);
+    char *name = plot_bob_name(b->scene, bob);
     if (!name)
         return;
     size_t series = plot_series(to, name);
@@ -267,7 +257,7 @@ static void note_outside(const bob_list *b, const run_picture *picture,
         if (at[0] >= window[0].low && at[0] <= window[0].high &&
             at[1] >= window[1].low && at[1] <= window[1].high)
             continue;
-        char *name = bob_name(b, bob);
+        char *name = plot_bob_name(b->scene, bob);
         text_extend(words, "%s%s, %s", **words ? "; " : "; outside: ",
                     picture->orbits.count > 1 || !o->integrator ? o->name
                                                                 : o->integrator,
@@ -375,6 +365,8 @@ static void draw_moment(plot *to, const bob_list *b, const orbit *o,
             draw_rod(to, orbit_row(o, last) + 4 * i);
     for (size_t bob = 0; bob < b->count; bob++)
         draw_bob(to, b, bob, o, orbit_row(o, last) + 4 * b->part[bob]);
+    for (size_t bob = 0; bob < b->count; bob++)
+        name_bob(to, b, bob, orbit_row(o, last) + 4 * b->part[bob]);
 }
 
 static plot *draw_frame(const run_picture *picture, const bob_list *b,

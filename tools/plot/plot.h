@@ -96,6 +96,9 @@ void plot_break(plot *, size_t series); /* the line ends */
    of an array, the unit being the scene's label of `of`, or, for a momentum
    without one, what follows from those of energy, t and the coordinate. */
 char *plot_label(const plan *, const char *name, const char *of);
+/* The name of bob number n of [picture]: its own, else "bob 1", or "body 1" where there
+   are no rods; NULL: the only one, which has none. */
+char *plot_bob_name(const nevh_scene *, size_t n);
 /* Scheme, gradient and time.
    scheme  NULL: several, and all gradients are named
    more    NULL or "": nothing */

@@ -90,6 +90,20 @@ void plot_note_run(plot *to, const plan *p, const char *scheme,
     plot_note(to, joined(&parts));
 }
 
+char *plot_bob_name(const nevh_scene *s, size_t n) {
+    const char *given = NULL;
+    size_t parts = nevh_scene_part_count(s), bobs = 0;
+    for (size_t i = 0; i < parts; i++) {
+        nevh_scene_part part = nevh_scene_part_at(s, i);
+        if (strcmp(part.kind, "bob") == 0 && bobs++ == n)
+            given = part.name;
+    }
+    return given          ? text_print("%s", given)
+           : bobs < 2     ? NULL
+           : bobs < parts ? text_print("bob %zu", n + 1)
+                          : text_print("body %zu", n + 1);
+}
+
 char *plot_scheme(const plan *p, const char *integrator) {
     const char *unit = nevh_scene_label(p->scene, "t");
     bool transformed;

@@ -34,6 +34,7 @@ static const char script[] =
     "all(g,'line').forEach(function(e,j){put(e,['x1','y1','x2','y2'],a,o+4*j)})"
     ";\n"
     "all(g,'circle').forEach(function(e,j){put(e,['cx','cy'],a,b+2*j)});\n"
+    "all(g,'text').forEach(function(e,j){put(e,['x','y'],a,b+2*j)});\n"
     "all(g,'polyline').forEach(function(e,j){var s='';"
     "for(var h=Math.max(0,l-d.trail);h<=l;h++)"
     "s+=a[h*m+4*d.rods+2*j]+','+a[h*m+4*d.rods+2*j+1]+' ';"
@@ -133,6 +134,21 @@ static void put_trail(const animation *f, const recording *r, const view *v,
     put_places_of(f, r, v, bob, last > TRAIL ? last - TRAIL : 0, to);
 }
 
+/* Right of the bobs, unless these are many; at: the first bob's place. */
+static void put_names(const animation *f, const double *at, const view *v,
+                      FILE *to) {
+    enum { FEW = 8 };
+    for (size_t i = 0; i < f->bobs && f->bobs <= FEW; i++, at += 2) {
+        char *name = plot_bob_name(f->plan->scene, i);
+        fprintf(to,
+                "<text dx=\"34\" dy=\"12\" font-size=\"36\" stroke=\"none\" "
+                "fill=\"#555\" x=\"%d\" y=\"%d\">",
+                across(v, at[0]), down(v, at[1]));
+        html_text(to, name ? name : "");
+        fputs("</text>\n", to);
+    }
+}
+
 /* At the last step. */
 static void put_orbit(const animation *f, const recording *r, const view *v,
                       FILE *to) {
@@ -150,6 +166,7 @@ static void put_orbit(const animation *f, const recording *r, const view *v,
         fprintf(to, "<circle r=\"%d\" fill=\"%s\" cx=\"%d\" cy=\"%d\"/>\n",
                 i < 4 ? 26 - 4 * (int)i : 12, colour_of_bob(f, r, i),
                 across(v, at[0]), down(v, at[1]));
+    put_names(f, at - 2 * f->bobs, v, to);
     fputs("</g>\n", to);
 }
 
