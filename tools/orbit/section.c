@@ -101,15 +101,17 @@ static int check_names(const plan *p, const list *names) {
     list known = {0};
     int status = TOOL_OK;
     size_t count = nevh_scene_section_count(p->scene);
+    const char *shown = nevh_scene_coordinate(p->scene, 0);
     for (size_t i = 0; i < count; i++)
         list_add(&known, nevh_scene_section_at(p->scene, i)->name);
     for (size_t i = 0; !status && i < names->count; i++)
         if (!list_has(&known, names->item[i]))
             status = tool_unknown("section", names->item[i], &known);
     if (!status && count == 0)
-        status = tool_refuse("%s: the scene has no [sections], as: swing = "
-                             "when phi = 0, rising: phi, p_phi",
-                             p->name);
+        status = tool_refuse("%s: the scene has no [sections], as: plane = "
+                             "when %s = 0, rising: %s, p_%s",
+                             p->name, nevh_scene_coordinate(p->scene, p->n > 1),
+                             shown, shown);
     return status;
 }
 
