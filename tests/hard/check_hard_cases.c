@@ -30,22 +30,24 @@ static const char fine[] = "Henon-Heiles, small steps";
 static const char planets[] = "outer planets";
 
 static hard_verdict judged_with(const nevh_integrator *scheme,
-                                const char *gradient, const hard_known *known,
+                                const char *gradient, const hard_subject *s,
                                 double budget) {
-    hard_subject s;
     hard_result r = {.scheme = scheme, .gradient = gradient};
-    ck_assert_int_eq(hard_open(&s, known), TOOL_OK);
     hard_begin("oscillator", scheme, 60);
     r.limit = nevh_stability_limit(scheme);
     hard_end();
-    hard_run(&s, budget, &r);
-    hard_judge(&s, &r);
-    printf("%s, %s, %s: %s: %s\n", known->given.name,
+    hard_run(s, budget, &r);
+    hard_judge(s, &r);
+    printf("%s, %s, %s: %s: %s\n", s->known.given.name,
            nevh_integrator_name(scheme), gradient, hard_verdict_name(r.verdict),
            r.happened);
     hard_result_free(&r);
-    hard_close(&s);
     return r.verdict;
+}
+
+static void open_case(hard_subject *s, size_t i) {
+    hard_known known = hard_known_at(i);
+    ck_assert_int_eq(hard_open(s, &known), TOOL_OK);
 }
 
 static hard_verdict judged(const nevh_integrator *scheme, const char *name,
@@ -53,8 +55,11 @@ static hard_verdict judged(const nevh_integrator *scheme, const char *name,
     size_t i = 0;
     while (strcmp(hard_known_at(i).given.name, name) != 0)
         ck_assert_ptr_nonnull(hard_known_at(++i).given.name);
-    hard_known known = hard_known_at(i);
-    return judged_with(scheme, "exact", &known, budget);
+    hard_subject s;
+    open_case(&s, i);
+    hard_verdict verdict = judged_with(scheme, "exact", &s, budget);
+    hard_close(&s);
+    return verdict;
 }
 
 static hard_verdict judge(const nevh_integrator *scheme, const char *name) {
@@ -65,12 +70,14 @@ enum { CASES = 53 };
 
 static void judge_case(int number, const nevh_integrator *const schemes[],
                        const char *const gradients[]) {
-    hard_known known = hard_known_at((size_t)number);
+    hard_subject s;
     ck_assert_ptr_null(hard_known_at(CASES).given.name);
+    open_case(&s, (size_t)number);
     for (; *gradients; gradients++)
         for (size_t i = 0; schemes[i]; i++)
-            ck_assert_int_gt(judged_with(schemes[i], *gradients, &known, 1e6),
+            ck_assert_int_gt(judged_with(schemes[i], *gradients, &s, 1e6),
                              HARD_WRONG);
+    hard_close(&s);
 }
 
 /* No case without a verdict, and none on a wrong orbit. */
