@@ -112,6 +112,8 @@ hard_orbit *hard_orbit_new(const hard_subject *);
 void hard_orbit_free(hard_orbit *); /* NULL is allowed */
 /* By how much the flow enlarges an error at most, over its time; NAN. */
 double hard_orbit_growth(const hard_orbit *);
+/* Finds that growth, unless steps are so long that errors have no bound. */
+void hard_orbit_follow(const hard_subject *, const nevh_integrator *);
 typedef struct hard_state hard_state;
 /* To watch a planned run of a scheme, with a tolerance if it adapts.
    returns  NULL where there is no orbit */

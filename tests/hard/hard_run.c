@@ -190,6 +190,7 @@ void hard_end(void) {
 
 void hard_run(const hard_subject *s, double budget, hard_result *r) {
     nevh_options o = plan_with(s, r);
+    hard_orbit_follow(s, r->scheme);
     hard_begin(s->known.given.name, r->scheme, patience * budget);
     nevh_stepper *m = nevh_stepper_new(s->system, r->scheme, &o);
     r->status = nevh_stepper_status(m);

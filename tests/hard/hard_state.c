@@ -35,6 +35,7 @@ struct hard_orbit {
     nevh_scene *scene; /* of systems that have no derivatives of their own */
     size_t n, count;
     double t_end, *t, *pace, *growth; /* growth: the largest so far */
+    bool followed;                    /* growth is found */
     double *range;                    /* 2n */
 };
 
@@ -49,9 +50,14 @@ static double distance(const hard_orbit *k, const double state[],
     return most;
 }
 
+/* Far from 0 the rounding of coordinates is noise in their slopes, of which steps that
+   are asked for less become as short as can be. */
 static nevh_stepper *fine(const hard_orbit *k, const hard_subject *s) {
     nevh_options o = {.gradient = nevh_exact, .q = s->q, .p = s->p, .t = s->t};
     o.tolerance = 1e-13;
+    for (size_t i = 0; i < k->n; i++)
+        o.tolerance =
+            fmax(o.tolerance, DBL_EPSILON / 10 * fabs(s->q[i]) / k->range[i]);
     return nevh_stepper_new(k->system, nevh_dop853, &o);
 }
 
@@ -101,6 +107,15 @@ static void find_growth(hard_orbit *k, const hard_subject *s) {
     nevh_stepper_free(m);
     tool_release(d.state);
     tool_release(d.growth);
+}
+
+void hard_orbit_follow(const hard_subject *s, const nevh_integrator *scheme) {
+    hard_orbit *k = s->orbit;
+    if (!k || k->followed ||
+        (s->dt * k->pace[0] > 1 && !nevh_integrator_adaptive(scheme)))
+        return;
+    find_growth(k, s);
+    k->followed = true;
 }
 
 /* Of what H does by itself: gradients at the start, at the times of the track.
@@ -193,7 +208,6 @@ hard_orbit *hard_orbit_new(const hard_subject *s) {
         return NULL;
     }
     find_pace(k, s);
-    find_growth(k, s);
     return k;
 }
 
