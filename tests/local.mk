@@ -3,6 +3,8 @@
 suites = \
 	tests/native/check_native \
 	tests/hard/check_hard_cases \
+	tests/scheme/check_order \
+	tests/robust/check_hard \
 	tests/system/check_system \
 	tests/system/check_structure \
 	tests/gradient/check_gradient \
@@ -53,7 +55,6 @@ suites = \
 	tests/scheme/check_kepler_flow \
 	tests/scheme/check_published \
 	tests/scheme/check_trees \
-	tests/scheme/check_order \
 	tests/scheme/check_reversal \
 	tests/scheme/check_symplecticity \
 	tests/scheme/check_drift \
@@ -102,7 +103,6 @@ suites = \
 	tests/robust/check_failures \
 	tests/robust/check_null \
 	tests/robust/check_hard_steps \
-	tests/robust/check_hard \
 	tests/robust/check_hard_pendulum \
 	tests/scheme/check_implicit \
 	tests/scheme/check_stiff \
@@ -200,18 +200,27 @@ endif
 
 dist_check_SCRIPTS = \
 	tests/tool/nevh_native.sh \
+	tests/build/manual.sh \
 	tests/tool/nevh_page_browser.sh \
 	tests/tool/nevh_recommend.sh \
+	tests/tool/nevh_verdict.sh \
+	tests/python/python.sh \
+	tests/build/sheets.sh \
+	tests/tool/nevh_chaos.sh \
+	tests/tool/nevh_compare.sh \
+	tests/tool/nevh_at_once.sh \
+	tests/build/examples.sh \
+	tests/build/paper.sh \
+	tests/robust/valgrind.sh \
+	tests/robust/effects_off.sh \
+	tests/tool/nevh_certain.sh \
 	tests/native/step_headers.sh \
 	tests/build/symbols.sh \
 	tests/build/arrows.sh \
 	tests/build/names.sh \
 	tests/robust/fuzz_compiles.sh \
 	tests/build/cplusplus.sh \
-	tests/build/examples.sh \
-	tests/build/sheets.sh \
 	tests/build/site.sh \
-	tests/build/paper.sh \
 	tests/tool/nevh.sh \
 	tests/tool/nevh_scenes.sh \
 	tests/tool/nevh_sheet.sh \
@@ -226,15 +235,12 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_new.sh \
 	tests/tool/nevh_effects.sh \
 	tests/tool/nevh_ends.sh \
-	tests/tool/nevh_compare.sh \
 	tests/tool/nevh_scales.sh \
 	tests/tool/nevh_reference.sh \
-	tests/tool/nevh_verdict.sh \
 	tests/tool/nevh_pictures.sh \
 	tests/tool/nevh_plot.sh \
 	tests/tool/nevh_plot_kinds.sh \
 	tests/tool/nevh_section.sh \
-	tests/tool/nevh_chaos.sh \
 	tests/tool/nevh_sweep.sh \
 	tests/tool/nevh_flow.sh \
 	tests/tool/nevh_frequencies.sh \
@@ -247,7 +253,6 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_page_lesson.sh \
 	tests/tool/nevh_portrait.sh \
 	tests/tool/nevh_map.sh \
-	tests/tool/nevh_at_once.sh \
 	tests/tool/nevh_signals.sh \
 	tests/tool/nevh_sweep_file.sh \
 	tests/tool/nevh_sweep_mpi.sh \
@@ -255,7 +260,6 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_code.sh \
 	tests/tool/nevh_export.sh \
 	tests/tool/nevh_export_rows.sh \
-	tests/tool/nevh_certain.sh \
 	tests/tool/nevh_constants.sh \
 	tests/tool/nevh_memory.sh \
 	tests/tool/nevh_files.sh \
@@ -267,16 +271,12 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_exit.sh \
 	tests/tool/nevh_cost.sh \
 	tests/tool/nevh_cost_length.sh \
-	tests/python/python.sh \
 	tests/python/notebook.sh \
 	tests/python/wheel.sh \
 	tests/build/pkgconfig.sh \
-	tests/build/manual.sh \
 	tests/build/install.sh \
 	tests/build/install_prefix.sh \
-	tests/build/debian.sh \
-	tests/robust/effects_off.sh \
-	tests/robust/valgrind.sh
+	tests/build/debian.sh
 
 EXTRA_DIST += \
 	tests/build/outside.c \
