@@ -9,7 +9,8 @@ XDG_CACHE_HOME=$PWD/$work/cache
 TMPDIR=$PWD/$work/tmp
 export XDG_CACHE_HOME TMPDIR
 mkdir $TMPDIR
-long='--t-end 20000 --gradient exact --integrators verlet --dt 0.1'
+short='--t-end 200 --gradient exact --integrators verlet --dt 0.1'
+compiled="$short --native always"
 
 # four PROCESS ARGUMENT...: PROCESS: who is killed (1), or 0.
 tried=
@@ -65,11 +66,18 @@ csv() { # ARGUMENT...: with one output
     same_file
 }
 
-four 0 run pendulum $long --samples 2
-four 0 run pendulum $long --samples 2 --native always
-four 0 compare pendulum $long
-four 0 cost pendulum $long --dt 0.1,0.2
-four 0 recommend pendulum $long --energy-error 0.1
+kept() {
+    test "$(find $XDG_CACHE_HOME -name '*.so' | wc -l)" -ge 1 || fails "compiles nothing"
+}
+four 0 run pendulum $short --samples 2
+four 0 run pendulum $compiled --samples 2
+kept
+four 0 compare pendulum $compiled
+kept
+four 0 cost pendulum $compiled --dt 0.1,0.2
+kept
+four 0 recommend pendulum $compiled --energy-error 0.1
+kept
 four 0 gradients pendulum --t-end 5
 four 0 effects pendulum
 four 0 check pendulum --t-end 5
@@ -137,24 +145,29 @@ else
     tried='sheet mark'
 fi
 
-four 1 run pendulum $long --samples 2
-four 1 compare pendulum $long
+four 1 run pendulum $compiled --samples 2
+four 1 compare pendulum $compiled
 
 # Compilers: one that fails, one that hangs, one that leaves a child with the pipe.
 compiler() {
-    printf '#!/bin/sh\n%s\n' "$1" >$work/compiler
+    printf '#!/bin/sh\n: >"$CALLED"\n%s\n' "$1" >$work/compiler
     chmod +x $work/compiler
     CC=$PWD/$work/compiler
     export CC
 }
-C_COMPILER=${CC:-cc}
-export C_COMPILER
-compiler 'exit 1'
-four 0 run pendulum $long --samples 2 --quiet
-compiler 'sleep 20 & exec $C_COMPILER "$@"'
-four 0 run pendulum $long --samples 2 --quiet
-compiler 'while :; do sleep 1; done'
-four 0 run pendulum $long --samples 2 --quiet
+failing() { # what the compiler does, ARGUMENT...
+    rm -f $CALLED
+    compiler "$1"
+    shift
+    four 0 run pendulum "$@" --samples 2 --quiet
+    test -e $CALLED || fails "asks no compiler"
+}
+C_COMPILER=${CC:-cc} CALLED=$PWD/$work/called
+export C_COMPILER CALLED
+failing 'exit 1' $compiled
+failing 'sleep 20 & exec $C_COMPILER "$@"' $compiled
+failing 'while :; do sleep 1; done' --t-end 30000 --gradient exact --integrators gauss8 \
+    --dt 0.1
 # No command is left out.
 command='four times'
 for name in $("$nevh" help | sed -n 's/^  nevh \([a-z]*\).*/\1/p'); do
