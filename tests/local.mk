@@ -315,6 +315,16 @@ EXTRA_DIST += \
 	tests/support/websocket.mjs
 
 TESTS = $(all_suites) $(dist_check_SCRIPTS)
+# Scripts that build, install and package, which .ci/run has look at the tarball, too.
+tarball_tests = \
+	tests/build/install.sh \
+	tests/build/install_prefix.sh \
+	tests/build/pkgconfig.sh \
+	tests/build/quickstart.sh \
+	tests/build/symbols.sh \
+	tests/python/wheel.sh \
+	tests/tool/nevh.sh \
+	tests/tool/nevh_scenes.sh
 TEST_EXTENSIONS = .sh
 SH_LOG_COMPILER = $(SHELL)
 
