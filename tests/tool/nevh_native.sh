@@ -6,8 +6,7 @@
 . "${srcdir:-.}/tests/support/nevh_support.sh"
 
 ${CC:-cc} --version >/dev/null 2>&1 || exit 77
-cache=$PWD/$work/cache
-XDG_CACHE_HOME=$cache
+XDG_CACHE_HOME=${XDG_CACHE_HOME:-$PWD/$work/kept}
 TMPDIR=$PWD/$work/tmp
 export XDG_CACHE_HOME TMPDIR
 mkdir $TMPDIR
@@ -22,7 +21,8 @@ kept() {
     ls $cache/nevh 2>/dev/null | wc -l
 }
 
-# Every scheme, by a gradient of formulas and by one of values.
+# Every scheme, by a gradient of formulas and by one of values; what is compiled is kept
+# for all tests.
 every=$("$nevh" list integrators --all --format csv | grep -v '^#' |
     awk -F, 'NR > 1 { printf "%s%s", c, $1; c = "," }')
 for scene in pendulum double-pendulum; do
@@ -46,7 +46,8 @@ exits 0 compare pendulum --integrators verlet,verlet --dt 0.1,0.05 --t-end 1 \
 has '^native: all steps are compiled$'
 
 # Nothing is compiled for short runs.
-rm -rf $cache
+cache=$PWD/$work/cache
+XDG_CACHE_HOME=$cache
 long='--set g=9.7 --gradient exact --t-end 25000'
 few='--set g=9.7 --gradient exact --t-end 5'
 for what in 'compare pendulum --integrators verlet,gauss8' \
