@@ -1,6 +1,6 @@
 /* nevh: what formulas as C text need before them.  nevh__one_sin is the elementary
-   function of one number, few_sin that of four, wide_sin that of eight: by vectors that
-   the processor has, since numbers have few registers otherwise.
+   function of one number, few_sin that of four, wide_sin that of as many as orbits stand
+   together, eight or four: by vectors that the processor has, since numbers have few registers otherwise.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "elementary/elementary_list.h"
 #include "native/writer_private.h"
@@ -21,6 +21,10 @@ int nevh__vector_lanes(void) {
 #else
     return 1;
 #endif
+}
+
+size_t nevh__lanes_together(void) {
+    return nevh__vector_lanes() < NEVH__LANES ? NEVH__LANES / 2 : NEVH__LANES;
 }
 
 /* Families of elementary functions. */

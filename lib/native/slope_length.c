@@ -51,8 +51,10 @@ static double half_operations(nevh__writer *w, const nevh_field *f, bool kick) {
                         ? 1
                         : (double)points_of(f, term, kick) / times;
         else if (f->gradient != nevh_exact)
-            times = (double)points_of(f, term, kick) /
-                    (f->gradient->offsets && wide ? NEVH__LANES : 1);
+            times =
+                (double)points_of(f, term, kick) /
+                (double)(f->gradient->offsets && wide ? nevh__lanes_together()
+                                                      : 1);
         operations += times * (double)nevh__tape_length(is->params);
     }
     return operations;

@@ -171,14 +171,9 @@ static void list_points(const sum *s, stencil *x) {
     }
 }
 
-/* Points of a block. */
-static size_t most_points(void) {
-    return nevh__vector_lanes() < LANES ? LANES / 2 : LANES;
-}
-
 /* A block of no more than four points takes vectors of four. */
 static size_t slope_text_lanes_of(const stencil *x) {
-    return x->count - x->at > 4 ? most_points() : 4;
+    return x->count - x->at > 4 ? nevh__lanes_together() : 4;
 }
 
 static const nevh__lane_words *words_of(const stencil *x) {
@@ -194,7 +189,7 @@ static const point *point_in(const stencil *x, size_t lane) {
 /* One variable of a block's points. */
 static void write_variable(nevh__writer *w, const stencil *x, size_t k) {
     const nevh__planned *term = x->s->of.term;
-    size_t index[LANES], lanes = slope_text_lanes_of(x);
+    size_t index[LANES] = {0}, lanes = slope_text_lanes_of(x);
     const nevh__lane_words *words = words_of(x);
     bool same = true, moved = false;
     const char *half = k < term->nq ? "q" : "p";
@@ -251,7 +246,7 @@ static void name_in_block(nevh__writer *w, const nevh__formula_text *f,
 }
 
 static bool write_blocks(nevh__writer *w, stencil *x) {
-    for (x->at = 0; x->at < x->count; x->at += most_points()) {
+    for (x->at = 0; x->at < x->count; x->at += nevh__lanes_together()) {
         nevh__formula_text f = {.tape = x->s->of.term->term->decl.params,
                                 .lanes = words_of(x),
                                 .variable = name_in_block,
@@ -322,11 +317,11 @@ static bool write_points(nevh__writer *w, stencil *x) {
 static void write_point(nevh__writer *w, const char *letter, unsigned first,
                         size_t at, bool wide, size_t k) {
     nevh__write(w, "%s%u", letter,
-                first + (unsigned)(wide ? at / most_points() : at));
+                first + (unsigned)(wide ? at / nevh__lanes_together() : at));
     if (wide && *letter == 'x')
         nevh__write(w, "_%zu", k);
     if (wide)
-        nevh__write(w, "[%zu]", at % most_points());
+        nevh__write(w, "[%zu]", at % nevh__lanes_together());
 }
 
 static void write_weight(nevh__writer *w, double weight) {

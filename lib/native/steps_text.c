@@ -96,8 +96,7 @@ void nevh__write_entry(nevh__writer *w) {
 
 size_t nevh__orbits_together(const nevh__writer *w) {
     bool any = nevh__has_lanes(w) && !w->loops && !(w->stages && w->by_lane);
-    return any && nevh__vector_lanes() < NEVH__LANES ? NEVH__LANES / 2
-                                                     : NEVH__LANES;
+    return any ? nevh__lanes_together() : NEVH__LANES;
 }
 
 const char *nevh__number_type(const nevh__writer *w) {

@@ -15,7 +15,7 @@ enum { MOST_VALUES = 3000, MOST_LANES = 1024, MANY_LANES = 64, WIDE = 8 };
 typedef struct {
     nevh__writer *text;
     const nevh__recurrence *r;
-    size_t order, lanes;
+    size_t order, lanes, together;
     bool first; /* coefficients of order 0 */
 } author;
 
@@ -172,9 +172,9 @@ static void write_rows(const author *a) {
     for (int which = 0; which < 2; which++) {
         nevh__write(a->text, "{ double *to = %s + k * LANES;\n",
                     which ? "b" : "a");
-        for (size_t from = 0; from < a->lanes; from += WIDE) {
-            nevh__write(a->text, "EIGHT(to + %zu) = (eight){", from);
-            for (size_t lane = from; lane < from + WIDE; lane++) {
+        for (size_t from = 0; from < a->lanes; from += a->together) {
+            nevh__write(a->text, "LANES_AT(to + %zu) = (series_lanes){", from);
+            for (size_t lane = from; lane < from + a->together; lane++) {
                 size_t at =
                     lane < r->used[0] ? lane : lane - r->used[0] + r->weighted;
                 bool there = is_lane(a, at);
@@ -281,12 +281,14 @@ bool nevh__write_series(nevh__writer *text, nevh_work *w) {
         text->refusal = "H has too many operations for its series to be";
     if (text->refusal)
         return false;
+    a.together = nevh__lanes_together();
     a.lanes = (r->used[0] + r->used[1] + WIDE - 1) / WIDE * WIDE;
     for (size_t i = 0; i < r->n_numbers; i++)
         nevh__writer_append(text, (double)r->numbers[i]);
     nevh__write(text,
-                "#define ORDER %zu\n#define LANES %zu\n#define STATE %zu\n",
-                a.order, a.lanes, 2 * r->n);
+                "#define ORDER %zu\n#define LANES %zu\n#define STATE %zu\n"
+                "#define TOGETHER %zu\n",
+                a.order, a.lanes, 2 * r->n, a.together);
     if (a.lanes >= MANY_LANES)
         nevh__write_form(text, "NEVH__TWO_ORDERS");
     nevh__write_lines(text, nevh__series_sums_text);

@@ -114,8 +114,7 @@ void nevh__write_effect(nevh__writer *, const nevh_term *);
 static inline bool nevh__has_lanes(const nevh__writer *w) {
     return w->width > 1 || (w->stages && !w->readable);
 }
-/* Orbits in a vector of them: eight where the processor has vectors of eight, else four,
-   as GCC takes longer vectors than those of the processor through memory. */
+/* Orbits, or stages, in a vector of them, "wide". */
 size_t nevh__orbits_together(const nevh__writer *);
 /* "double", or what stands side by side. */
 const char *nevh__number_type(const nevh__writer *);
@@ -286,5 +285,8 @@ void nevh__slope_values(const nevh_field *, bool kick, uint64_t values[]);
 /* The processor's vectors, as the library's own blocks take them: 8, 4, 2
    doubles, or 1: there are none. */
 int nevh__vector_lanes(void);
+/* Lanes of the longest vectors in texts: eight where the processor has such, else four.
+   Through memory GCC takes vectors that are longer than those of the processor. */
+size_t nevh__lanes_together(void);
 
 #endif

@@ -58,7 +58,7 @@ typedef nevh__number slope_number;
 
 #if defined FAMILY_DRIVER || defined STANDS_ALONE
 #ifdef NEVH__WIDE
-enum { LANES = 8 };
+enum { LANES = sizeof(wide) / sizeof(double) };
 #else
 enum { LANES = 1 };
 #endif

@@ -38,8 +38,10 @@ for compiler in "$cc" clang; do
             -DNEVH__DIFFERENCES
     done
     compiles $compiler IMPLICIT native/steps/implicit_lanes.h
+    compiles $compiler IMPLICIT native/steps/implicit_lanes.h -DNEVH__FOUR_TOGETHER
     wide='-DNEVH__SIDE_BY_SIDE -DNEVH__WIDE'
-    for forms in '' "$wide" "$wide -DNEVH__GROUPS" -DNEVH__LOOPS; do
+    for forms in '' "$wide" "$wide -DNEVH__GROUPS" -DNEVH__LOOPS \
+        "$wide -DNEVH__FOUR_TOGETHER"; do
         compiles $compiler DRIVER native/steps/block_driver.h $forms
     done
     compiles $compiler DRIVER native/steps/long_driver.h $wide -DNEVH__LOOPS
@@ -66,7 +68,8 @@ for compiler in "$cc" clang; do
     compiles $compiler DRIVER native/steps/compiled_needs.h \
         -DNEVH__SIDE_BY_SIDE -DNEVH__STAGES
     for forms in '' -DNEVH__TWO_ORDERS; do
-        compiles $compiler FORMULAS native/steps/series_sums.h $forms
+        compiles $compiler FORMULAS native/steps/series_sums.h $forms -DTOGETHER=8
+        compiles $compiler FORMULAS native/steps/series_sums.h $forms -DTOGETHER=4
     done
     compiles $compiler FORMULAS native/steps/formula_needs.h -DNEVH__FOR_READERS
     compiles $compiler FORMULAS native/steps/loop_needs.h -DNEVH__LOOPS
