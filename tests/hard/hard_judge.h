@@ -110,7 +110,8 @@ void hard_result_free(hard_result *);
    returns  NULL when no reference can be had */
 hard_orbit *hard_orbit_new(const hard_subject *);
 void hard_orbit_free(hard_orbit *); /* NULL is allowed */
-/* By how much the flow enlarges an error at most, over its time; NAN. */
+/* By how much the flow enlarges an error at most, over its time; INFINITY before that is
+   found, NAN where there is no orbit. */
 double hard_orbit_growth(const hard_orbit *);
 /* Finds that growth, unless steps are so long that errors have no bound. */
 void hard_orbit_follow(const hard_subject *, const nevh_integrator *);

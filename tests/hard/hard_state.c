@@ -56,8 +56,9 @@ static nevh_stepper *fine(const hard_orbit *k, const hard_subject *s) {
     nevh_options o = {.gradient = nevh_exact, .q = s->q, .p = s->p, .t = s->t};
     o.tolerance = 1e-13;
     for (size_t i = 0; i < k->n; i++)
-        o.tolerance =
-            fmax(o.tolerance, DBL_EPSILON / 10 * fabs(s->q[i]) / k->range[i]);
+        if (k->range[i] > 0)
+            o.tolerance = fmax(o.tolerance,
+                               DBL_EPSILON / 10 * fabs(s->q[i]) / k->range[i]);
     return nevh_stepper_new(k->system, nevh_dop853, &o);
 }
 
@@ -111,8 +112,10 @@ static void find_growth(hard_orbit *k, const hard_subject *s) {
 
 void hard_orbit_follow(const hard_subject *s, const nevh_integrator *scheme) {
     hard_orbit *k = s->orbit;
+    bool returns = s->known.facts & HARD_RETURN;
     if (!k || k->followed ||
-        (s->dt * k->pace[0] > 1 && !nevh_integrator_adaptive(scheme)))
+        (s->dt * k->pace[0] > 1 && !returns &&
+         !nevh_integrator_adaptive(scheme)))
         return;
     find_growth(k, s);
     k->followed = true;
@@ -201,8 +204,10 @@ hard_orbit *hard_orbit_new(const hard_subject *s) {
     k->t = tool_allocate(3 * k->count, sizeof *k->t);
     k->pace = k->t + k->count;
     k->growth = k->pace + k->count;
-    for (size_t i = 0; i < k->count; i++)
+    for (size_t i = 0; i < k->count; i++) {
         k->t[i] = i < SAMPLES ? s->t + span * (double)i / SAMPLES : k->t_end;
+        k->growth[i] = INFINITY;
+    }
     if (nevh_reference_status(k->reference)) {
         hard_orbit_free(k);
         return NULL;
