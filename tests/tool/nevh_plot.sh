@@ -371,7 +371,7 @@ draws run pendulum --plot-kind time --plot $svg --t-end 1000 --columns phi
 shows 'verlet, dt = 0.1 s; gradient central4; t = 0 ... 1000 s'
 # So is a phase plane of more steps than are kept: of some it has lines.
 draws run kepler-0.9 --plot $svg --keep-plot-script $work/out.gp
-texts | grep -q 't = 0 ... 50; .*a part of the run: --t-end 628.319 shows all' ||
+texts | tr '\n' ' ' | grep -q 't = 0 ... 50; .*a part of the run: --t-end 628.319 shows all' ||
     { fails "does not cut the run"; texts; }
 grep -q '^ *\$series2 using 1:2 with lines\|plot \$series2 using 1:2 with lines' $work/out.gp ||
     fails "draws dots"

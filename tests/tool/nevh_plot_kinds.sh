@@ -148,11 +148,11 @@ test "$(grep -c '^unset multiplot' $work/out.gp)" = 85 ||
 for t in 0.0 15.0 30.0; do
     grep -q "t = $t" $work/out.gp || fails "has no frame of t = $t"
 done
-# The bodies are the third and the seventh series of a frame: tracks and bobs, and the
-# centre's.
+# The bodies are the third and the ninth series of a frame: tracks, bobs and names, and
+# the centre's.
 awk '/^\$series/ { n = $1 } /^EOD/ { n = "" }
     n == "$series3" && NF == 2 { a = $1; b = $2 }
-    n == "$series7" && NF == 2 { frame++; d = sqrt((a - $1)^2 + (b - $2)^2)
+    n == "$series9" && NF == 2 { frame++; d = sqrt((a - $1)^2 + (b - $2)^2)
         if (frame == 1) first = d }
     END { exit !(frame == 85 && first == 0 && d > 0.3) }' $work/out.gp ||
     fails "draws other orbits"

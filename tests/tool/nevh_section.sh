@@ -65,6 +65,8 @@ exits 1 section $single --t-end 50 --vary 'y = 0.1, 3' \
     --vary 'p_x = solve(H = 1/8, from 0.4)'
 says 'verlet member 1 failed: '
 has '^crossing,.*,0$'
+exits 2 section kepler
+says 'plane = when y = 0, rising: x, p_x'
 exits 2 section pendulum-rotating --vary 'g = 1, 2'
 says 'change more than where members start'
 # A parameter that only the start reads is a start.

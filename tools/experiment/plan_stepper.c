@@ -160,8 +160,9 @@ void plan_note_digits(const plan *p, const list *integrators, list *notes) {
         bool transformed;
         const char *name = integrators->item[i];
         const nevh_integrator *x = plan_scheme(p, name, &transformed);
-        bool finest =
-            x == nevh_taylor && p->tolerances && p->tolerance[0] < DBL_EPSILON;
+        bool finest = false;
+        for (size_t k = 0; x == nevh_taylor && k < p->tolerances; k++)
+            finest |= p->tolerance[k] < DBL_EPSILON;
         if (strncmp(name, "gsl-", 4) == 0)
             list_add(&gsl, name);
         else if (finest || nevh_integrator_needs(x) & NEVH_PARTS)

@@ -169,13 +169,14 @@ char *picture_cut(run_picture *picture, double turns, double wanted) {
 
 /* Outliers are farther from the quartiles than three times what is between these: J. W.
    Tukey, Exploratory Data Analysis (1977), calls them "far out". */
-void picture_widen_measured(run_picture *picture, const char *column,
+bool picture_widen_measured(run_picture *picture, const char *column,
                             picture_range *r) {
     static const double far = 3;
     const measured *m = &picture->data;
     size_t k = measured_find(m, column), count = 0;
+    bool outside = false;
     if (k == m->columns || !m->points)
-        return;
+        return false;
     double *sorted = tool_allocate(m->points, sizeof *sorted);
     for (size_t i = 0; i < m->points; i++)
         if (isfinite(m->value[i * m->columns + k]))
@@ -188,11 +189,13 @@ void picture_widen_measured(run_picture *picture, const char *column,
     double more = picture_room * (r->high - r->low);
     for (size_t i = 0; i < count; i++)
         if (third > first && (sorted[i] < low || sorted[i] > high)) {
-            picture->outside++;
+            outside = true;
         } else {
             r->low = fmin(r->low, sorted[i] - more);
             r->high = fmax(r->high, sorted[i] + more);
         }
+    picture->outside |= outside;
+    return outside;
 }
 
 void picture_hold_measured(run_picture *picture, const char *x, const char *y,
@@ -254,9 +257,8 @@ void picture_note(const run_picture *picture, plot *to, const char *more) {
                             *others && *more ? "; " : "");
     text_extend(&text, "%s", more);
     if (picture->outside)
-        text_extend(&text, "%s%zu measured outlier%s outside",
-                    *text ? "; " : "", picture->outside,
-                    picture->outside == 1 ? "" : "s");
+        text_extend(&text, "%smeasured outliers are outside",
+                    *text ? "; " : "");
     plot_note_run(to, &picture->plan, scheme, text);
 }
 

@@ -16,7 +16,7 @@ typedef struct {
         reference; /* without an integrator; without rows where there is none */
     const row_times *rows; /* asked for by options; NULL: by the picture */
     measured data;         /* of no points where there are none */
-    size_t outside;        /* measured numbers that no panel shows */
+    bool outside;          /* a panel leaves measured outliers out */
     bool quiet;            /* failures are not printed */
 } run_picture;
 
@@ -76,8 +76,8 @@ picture_range picture_extent(const run_picture *, const size_t columns[],
                              size_t count);
 
 /* Widens the range so that no measured number of the column is cut off, but for
-   outliers, which would stretch the axis; adds these to `outside`. */
-void picture_widen_measured(run_picture *, const char *column, picture_range *);
+   outliers, which would stretch the axis; true where there are some, and `outside` is. */
+bool picture_widen_measured(run_picture *, const char *column, picture_range *);
 /* The same of the ranges of a panel where both columns were measured. */
 void picture_hold_measured(run_picture *, const char *x, const char *y,
                            picture_range *across, picture_range *up);

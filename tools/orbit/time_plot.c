@@ -205,17 +205,18 @@ static double last_time(const run_picture *picture) {
 /* Outliers do not stretch the axis of what the panel shows. */
 static void limit_measured(plot *to, run_picture *picture,
                            const column_panels *c, size_t panel) {
-    size_t before = picture->outside;
+    bool outside = false;
     picture_range all = {INFINITY, -INFINITY};
     for (size_t k = 0; k < c->columns.count; k++) {
         if (c->panel[k] != panel)
             continue;
         picture_range shown = picture_extent(picture, &k, 1);
-        picture_widen_measured(picture, c->columns.item[k].name, &shown);
+        outside |=
+            picture_widen_measured(picture, c->columns.item[k].name, &shown);
         all.low = fmin(all.low, shown.low);
         all.high = fmax(all.high, shown.high);
     }
-    if (picture->outside > before)
+    if (outside)
         plot_limit_y(to, all.low, all.high);
 }
 
