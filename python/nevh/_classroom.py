@@ -276,7 +276,7 @@ def doubt_key(key, verdicts):
         sys.stderr.write("nevh: %d of %d answers %s right; %s\n" % (
             right, len(verdicts), "is" if right == 1 else "are",
             "is --key %s that of the sheets?" % key if key else
-            "sheets that were made with --key are marked with it"))
+            "if the sheets were made with --key, mark needs the same --key"))
 
 
 def sums(right):

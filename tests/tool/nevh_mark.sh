@@ -112,6 +112,9 @@ exits 0 mark $work/usual.csv
 test "$(grep -c ': 1 of 1 are right' $work/out)" = 2 || fails "refuses the usual answers"
 exits 2 sheet 8 --for 'Ada Lovelace'
 says '--for needs --key'
+for name in A B C D; do echo $name,8.1,-1; done | sed '1i name,task,answer' >$work/wrong.csv
+exits 0 mark $work/wrong.csv
+says '0 of 4 answers are right; if the sheets were made with --key'
 
 # Names that differ in an accent have a file each.
 printf 'Nuñez\nNunez\nNUÑEZ J.\nNunez-J\n' >$work/alike

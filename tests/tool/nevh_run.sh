@@ -297,9 +297,10 @@ untouched
 
 # Functions have the same digits by native code, and by C terms taken by value.
 exits 0 run pendulum --t-end 40 --portable --native never
-mv $work/out $work/other
-exits 0 run pendulum --t-end 40
-cmp $work/out $work/other || fails "differs between --portable and native steps"
+grep -v '^#' $work/out >$work/other
+exits 0 run pendulum --t-end 40 --native always
+grep -v '^#' $work/out | cmp - $work/other ||
+    fails "differs between --portable and native steps"
 sed 's/0/1/2' $work/x.kept >$work/x.csv
 exits 2 run $run --resume $work/x.csv
 says 'not as the interrupted run left it'
