@@ -134,17 +134,20 @@ static void put_trail(const animation *f, const recording *r, const view *v,
     put_places_of(f, r, v, bob, last > TRAIL ? last - TRAIL : 0, to);
 }
 
-/* Right of the bobs, unless these are many; at: the first bob's place. */
+/* Above the bobs, unless these are many or a sole one without a name; at: the first
+   bob's place. */
 static void put_names(const animation *f, const double *at, const view *v,
                       FILE *to) {
     enum { FEW = 8 };
     for (size_t i = 0; i < f->bobs && f->bobs <= FEW; i++, at += 2) {
         char *name = plot_bob_name(f->plan->scene, i);
+        if (!name)
+            return;
         fprintf(to,
-                "<text dx=\"34\" dy=\"12\" font-size=\"36\" stroke=\"none\" "
+                "<text text-anchor=\"middle\" dy=\"-36\" stroke=\"none\" "
                 "fill=\"#555\" x=\"%d\" y=\"%d\">",
                 across(v, at[0]), down(v, at[1]));
-        html_text(to, name ? name : "");
+        html_text(to, name);
         fputs("</text>\n", to);
     }
 }
