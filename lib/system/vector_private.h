@@ -5,7 +5,7 @@
    In sums of several terms GCC keeps an array of lanes in memory, and one
    operation waits for the other to be stored; a vector it keeps in a register,
    unless it is longer than those of the processor: so two of them are a block of
-   lanes, and processors without AVX-512 keep them, too.
+   lanes, and processors with AVX keep them, too.
    Arithmetic is that of its lanes, on any processor.
 
    This header needs <nevh/simd.h> and the C library alone. */
