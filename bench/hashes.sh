@@ -15,8 +15,8 @@
 #   export-arm            for aarch64, by aarch64-linux-gnu-gcc and qemu-aarch64
 #
 # Prints for each scene the steps, how many of the states are equal, and the first that
-# differs.  Forms that a scheme does not have, and compilers that are not here, are not
-# counted; nor schemes that refuse the scene.  All hashes go to the file HASHES.
+# differs or fails.  Forms that a scheme does not have, and compilers that are not here, are
+# not counted; nor schemes that refuse the scene.  All hashes go to the file HASHES.
 
 nevh=$1
 shift
@@ -34,6 +34,7 @@ XDG_CACHE_HOME=$work
 export XDG_CACHE_HOME
 
 have() { command -v "$1" >/dev/null; }
+# What follows prints a hash, exits with 77 where there is no such form, or fails.
 # The last row of the file out, as t, coordinates and momenta of 17 digits.
 hash() { # FIRST: the number of the first column to take
     awk -F, -v first=$1 -v n=$((2*freedom)) '!/^#/ { line = $0 } END {
@@ -45,11 +46,11 @@ run() { # OPTION...
     $on "$nevh" run $scene $options --every $steps "$@" >$work/out 2>$work/err || return 1
     hash 2
 }
-# Fails where no steps were compiled.
 compiled() { # CC OPTION...
-    have "${1%% *}" && export CC="$1" || return 1
+    have "${1%% *}" && export CC="$1" || return 77
     shift
-    "$@" --native always && grep -q '^# native: steps are' $work/out
+    "$@" --native always || return
+    grep -q '^# native: steps are' $work/out || return 77
 }
 emulated() { # COMMAND...
     folder=$(dirname "$nevh")
@@ -57,21 +58,22 @@ emulated() { # COMMAND...
         nevh=$folder/.libs/nevh LD_LIBRARY_PATH=$folder/../.libs
         export LD_LIBRARY_PATH
     }
-    have qemu-x86_64 && on='qemu-x86_64 -cpu core2duo' && "$@"
+    have qemu-x86_64 || return 77
+    on='qemu-x86_64 -cpu core2duo' && "$@"
 }
 sweep() { # WIDTH OPTION...
     width=$1
     shift
     "$nevh" sweep $scene $options --width $width --threads 1 --outcomes state \
-        --vary "$name=range($start,$start,8)" "$@" >$work/out 2>$work/err || return 1
+        --vary "$name=range($start,$start,8)" "$@" >$work/out 2>$work/err || return 77
     awk -F, '/^[0-9]/ { $1 = ""; print }' $work/out | uniq | wc -l | grep -qx 1 &&
         hash 4 || echo differ
 }
 exported() { # RUNNER COMPILER...
     runner=$1
     shift
-    have $1 && { test -z "$runner" || have $runner; } || return 1
-    test -s $work/prog.c || return 1
+    have $1 && { test -z "$runner" || have $runner; } || return 77
+    test -s $work/prog.c || return 77
     "$@" -O2 -ffp-contract=off -o $work/prog $work/prog.c -lm 2>$work/err &&
         $runner $work/prog >$work/out && hash 2
 }
@@ -113,7 +115,12 @@ for each; do
             rm -f $work/prog.c
             "$nevh" export $scene $options --every $steps -o $work/prog.c 2>$work/err
             for form in $forms; do
-                is=$(state_of $form) || continue
+                is=$(state_of $form)
+                case $? in
+                77) continue ;;
+                0) ;;
+                *) is=fails ;;
+                esac
                 test -z "$HASHES" || echo "$each $scheme $gradient $form $is $due" >>"$HASHES"
                 total=$((total + 1))
                 if test "$is" = "$due"; then

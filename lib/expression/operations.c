@@ -33,7 +33,8 @@ bool nevh__operation_is_smooth(unsigned operation) {
 }
 
 bool nevh__operation_is_special(unsigned operation) {
-    return operations[operation].kind >= NEVH__KIND_SPECIAL;
+    nevh__operation_kind kind = operations[operation].kind;
+    return kind == NEVH__KIND_SPECIAL || kind == NEVH__KIND_GSL;
 }
 
 /* The name of an operation as formulas here have it; COUNT: there is none. */

@@ -121,11 +121,10 @@ static void pilot_integrate(nevh__step_selection *e, int steps,
     for (int i = 1; !status && i <= steps; i++) {
         status = gsl_odeiv2_evolve_apply(evolve, control, step, ode, &t,
                                          0.5 * DBL_MAX, &h, y);
-        if (!status && runs_away(e, y))
+        if (status || runs_away(e, y))
             break;
-        if (!status)
-            add_sizes(e, y);
-        if (status || i % (steps / PILOT_SAMPLES) != 0)
+        add_sizes(e, y);
+        if (i % (steps / PILOT_SAMPLES) != 0)
             continue;
         add_sample(e, t, y, y + n);
         begin_sizes(e);

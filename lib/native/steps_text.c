@@ -136,9 +136,9 @@ static void write_program_needs(nevh__writer *w, size_t n, bool finite,
 }
 
 void nevh__write_needs(nevh__writer *w, size_t n, bool finite, bool sums) {
-    size_t lanes = w->stages ? NEVH__LANES : nevh__orbits_together(w);
-    if (w->width == 1 && !w->loops)
-        lanes = 1;
+    size_t lanes = w->width == 1 && !w->loops ? 1
+                   : w->stages                ? NEVH__LANES
+                                              : nevh__orbits_together(w);
     size_t group = w->group && !w->loops ? w->group : 1;
     if (w->readable) {
         write_program_needs(w, n, finite, sums);

@@ -208,13 +208,12 @@ static bool is_drawn(const plan *p, const rows_drawn *d, size_t i) {
     return is_first(d->row, i) && !plan_is_exact(p, d->row[i].scheme);
 }
 
-static const char left_out[] = "schemes whose parts solve H are left out";
-
-static bool has_exact(const plan *p, const rows_drawn *d) {
-    bool exact = false;
+/* "" where no scheme is. */
+static const char *left_out(const plan *p, const rows_drawn *d) {
     for (size_t i = 0; i < d->count; i++)
-        exact |= plan_is_exact(p, d->row[i].scheme);
-    return exact;
+        if (plan_is_exact(p, d->row[i].scheme))
+            return "; schemes whose parts solve H are left out";
+    return "";
 }
 
 /* The kinds of errors that some scheme has at two steps. */
@@ -296,11 +295,11 @@ static void add_note(plot *to, const plan *p, const rows_drawn *d) {
         some |= steps >= ORDER_STEPS;
     }
     char *text = text_print(
-        "%s%s%s%s",
+        "%s%s%s",
         some ? "grey: the points that a slope is fitted to, none above 0.1"
              : "a slope needs five steps: --dt",
         adaptive ? "; schemes that choose their steps are left out" : "",
-        has_exact(p, d) ? "; " : "", has_exact(p, d) ? left_out : "");
+        left_out(p, d));
     plot_note_run(to, p, NULL, text);
 }
 
@@ -311,10 +310,9 @@ int order_plot(const options *o, const plan *p, const row rows[], size_t count,
     plot *to = NULL;
     if (panels == 0)
         return tool_refuse("there is nothing to plot: no scheme has errors "
-                           "between 0 and %g at two %s%s%s",
+                           "between 0 and %g at two %s%s",
                            useless, axis == ORDER_DT ? "steps" : "lengths",
-                           has_exact(p, &d) ? "; " : "",
-                           has_exact(p, &d) ? left_out : "");
+                           left_out(p, &d));
     char *x = plot_label(p, axis == ORDER_DT ? "dt" : "end of the run", "t");
     for (size_t k = 0; k < panels; k++) {
         if (to)

@@ -20,18 +20,18 @@ _Static_assert(sizeof(double) == sizeof 1.0 && sizeof(size) == sizeof(void *),
 #define INFINITY __builtin_inf()
 #define NAN      __builtin_nan("")
 #define memcpy   __builtin_memcpy
+typedef double few __attribute__((vector_size(32), aligned(8)));
+#define ALL_FOUR(x)  ((few){x, x, x, x})
+#define EACH_OF_FOUR for (int lane = 0; lane < 4; lane++)
 #ifdef NEVH__FOUR_TOGETHER
-typedef double wide __attribute__((vector_size(32), aligned(8)));
-#define ALL(x)    ((wide){x, x, x, x})
-#define EACH_LANE for (int lane = 0; lane < 4; lane++)
+typedef few wide;
+#define ALL       ALL_FOUR
+#define EACH_LANE EACH_OF_FOUR
 #else
 typedef double wide __attribute__((vector_size(64), aligned(8)));
 #define ALL(x)    ((wide){x, x, x, x, x, x, x, x})
 #define EACH_LANE for (int lane = 0; lane < 8; lane++)
 #endif
-typedef double few __attribute__((vector_size(32), aligned(8)));
-#define ALL_FOUR(x)  ((few){x, x, x, x})
-#define EACH_OF_FOUR for (int lane = 0; lane < 4; lane++)
 typedef double couple __attribute__((vector_size(16), aligned(8)));
 extern double fabs(double) CONST, floor(double) CONST, rint(double) CONST;
 extern double sqrt(double) CONST, fmod(double, double) CONST;
