@@ -50,9 +50,10 @@ static void begin_sizes(nevh__step_selection *e) {
     if (s->count == s->most)
         return;
     double *row = largest_row(s, n);
-    for (size_t i = 0; i < 2 * n; i++)
-        row[i] = s->count > e->lanes ? row[i - 2 * n]
-                                     : nevh__largest_size(e, i, s->count);
+    if (s->count > e->lanes)
+        memcpy(row, row - 2 * n, 2 * n * sizeof *row);
+    for (size_t i = 0; s->count <= e->lanes && i < 2 * n; i++)
+        row[i] = nevh__largest_size(e, i, s->count);
 }
 
 /* Displaced from one of the lanes given. */
