@@ -15,6 +15,11 @@ libnevh_core_la_SOURCES += \
 	integrators/kernels/splitting_kernel.c \
 	integrators/kernels/kepler_flow_private.h \
 	integrators/kernels/kepler_flow.c \
+	integrators/kernels/kepler_lanes.c \
+	integrators/kernels/form_block_private.h \
+	integrators/kernels/form_block.c \
+	integrators/kernels/hierarchy_private.h \
+	integrators/kernels/hierarchy.c \
 	integrators/kernels/form_flow_private.h \
 	integrators/kernels/form_flow.c \
 	integrators/kernels/parts_kernel.c \

@@ -33,6 +33,7 @@ dist_scenes_DATA = \
 	scenes/penning-trap.nevh \
 	scenes/kirkwood-gap.nevh \
 	scenes/pendulum.nevh \
+	scenes/solar-system.nevh \
 	scenes/sun-earth-moon.nevh
 
 # What configure makes for the command in the build tree.

@@ -53,6 +53,7 @@ suites = \
 	tests/scheme/check_parts \
 	tests/scheme/check_respa \
 	tests/scheme/check_kepler_flow \
+	tests/scheme/check_hierarchy \
 	tests/scheme/check_published \
 	tests/scheme/check_trees \
 	tests/scheme/check_reversal \
@@ -126,6 +127,7 @@ tests_native_check_compilers_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_splitting_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_parts_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_kepler_flow_LDADD = $(INSIDE_LIBS)
+tests_scheme_check_hierarchy_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_trees_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_damped_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_brouwer_LDADD = $(INSIDE_LIBS)

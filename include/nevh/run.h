@@ -156,6 +156,22 @@ NEVH_API nevh_counts nevh_stepper_counts(const nevh_stepper *);
    values.  Owned by the stepper. */
 NEVH_API nevh_field *nevh_stepper_field(nevh_stepper *);
 
+/* Writes the pairs of bodies with -k/|a - b| which a scheme by parts moves in Jacobi
+   coordinates; they are found at the state to plan at.
+   text     out: "((x[1], x[2]), x[3])" where x[2] moves about x[1] and x[3] about the
+            centre of mass of both, by first coordinates; cut off at size; NULL if size
+            is 0
+   whole    out, or NULL: whether H has nothing else, so that steps are exact
+   returns  the number of pairs; 0: there are none, or the scheme is another one */
+NEVH_API size_t nevh_stepper_hierarchy(const nevh_stepper *, char text[],
+                                       size_t size, bool *whole);
+/* The gradient of B, by which a scheme by parts kicks; of other schemes that of H.
+   t, q, p  one state
+   dh_dq    out, n numbers
+   returns  NEVH_OK or a status, recorded in the stepper's field */
+NEVH_API int nevh_stepper_kick(nevh_stepper *, double t, const double q[],
+                               const double p[], double dh_dq[]);
+
 /* Is called with the state after `step` steps, at time t.  A result other
    than 0 stops the run. */
 typedef int (*nevh_observe_fn)(void *data, size_t step, double t,

@@ -1,38 +1,22 @@
 /* nevh: the flow of a quadratic form, and about centres.
 
-   dz/dt = J (K z + g) has the flow z + D(t) (z, 1) with D(t) = exp(t a) - 1, where
-   a is the matrix J (K, g) with a row of zeros for the 1.  D is a Taylor series
-   over t / 2^k, and D(2 t) = 2 D(t) + D(t)^2 [C. Moler, C. Van Loan, Nineteen
-   dubious ways to compute the exponential of a matrix, twenty-five years later,
-   SIAM Rev. 45 (2003) 3-49, method 3], in long double (double in WebAssembly, where
-   that is software), with momenta in units in which both halves of K are about as
-   large.  Elements are kept in two doubles, since a rounding of D is the same in each
-   step, and energies of the form would drift by it.
-
-   Variables of a block stand as q, p of one coordinate after the other, so that
-   chains have banded matrices: elements below the last digits are left out.
-   A block with -k/|q| has no matrix: kepler_flow.c moves it.  Coordinates that are
-   free, dq/dt = a p, are moved side by side.
+   The form has a matrix for each block of variables that it connects; form_block.c
+   makes it.  Variables of a block stand as q, p of one coordinate after the other, so
+   that chains have banded matrices.  A block with -k/|q| has no matrix: kepler_flow.c
+   moves it, and hierarchy.c moves bodies that attract one another.  Coordinates that
+   are free, dq/dt = a p, are moved side by side.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "form_flow_private.h"
-#include "gradient/field_private.h"
-#include "kepler_flow_private.h"
+#include "form_block_private.h"
+#include "hierarchy_private.h"
 #include "system/parts_private.h"
 #include <tgmath.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_BLOCK = 128, SETS = 2, TERMS = 18, MOST_HALVINGS = 200 };
+enum { MOST_BLOCK = 128, SETS = 2 };
 
-/* Some coordinates and their momenta: m = 2 count variables. */
-typedef struct {
-    size_t count;
-    const size_t *index; /* coordinates of the system */
-    nevh__extended *a;   /* m x (m + 1), by rows: dz/dt = a (z, 1) */
-    int *units;          /* m: powers of two */
-    size_t at, column;   /* of its elements, and columns, in a set */
-    double k;            /* of -k/|q| */
-} block;
+typedef nevh__form_block block;
 
 /* Element by element in columns: (row, column) of D at column * m + row. */
 typedef struct {
@@ -52,7 +36,8 @@ struct nevh__form_flow {
     int *units;
     double *times;
     set sets[SETS];
-    size_t now; /* the set in use */
+    size_t now;              /* the set in use */
+    nevh__hierarchy *bodies; /* that are moved together, or NULL */
 };
 
 void nevh__form_flow_free(nevh__form_flow *f) {
@@ -71,6 +56,7 @@ void nevh__form_flow_free(nevh__form_flow *f) {
     free(f->room);
     free(f->units);
     free(f->times);
+    nevh__hierarchy_free(f->bodies);
     free(f);
 }
 
@@ -280,6 +266,37 @@ static bool plan_flow(nevh__form_flow *f, const nevh_field *field) {
     return fine;
 }
 
+/* Finds bodies among the coordinates that are free. */
+static int plan_bodies(nevh__form_flow *f, nevh_work *w) {
+    double *inverse_mass = nevh__array(f->n, sizeof *inverse_mass);
+    for (size_t i = f->n_bound; inverse_mass && i < f->n_blocks; i++)
+        inverse_mass[f->blocks[i].index[0]] = (double)f->blocks[i].a[1];
+    int status = inverse_mass
+                     ? nevh__hierarchy_new(w->field, inverse_mass,
+                                           w->options->q, w->width, &f->bodies)
+                     : NEVH_ENOMEM;
+    free(inverse_mass);
+    return status;
+}
+
+static int flow_refuse(nevh_work *w, const nevh__form_flow *f, int status) {
+    const char *name = w->integrator->name;
+    if (status == NEVH_ENOMEM)
+        return nevh_work_fail(w, status, "out of memory");
+    if (f->a)
+        return nevh_work_fail(
+            w, status,
+            "%s is to move bodies fast, but these do not move about one "
+            "another: each has one mass and no other form, at most %d are "
+            "apart at the start, and coordinates of each come in one order",
+            name, NEVH__MOST_BODIES);
+    return nevh_work_fail(
+        w, status,
+        "%s moves connected coordinates by one matrix of at most %d of them, "
+        "but the form connects %zu",
+        name, MOST_BLOCK, largest_block(f));
+}
+
 nevh__form_flow *nevh__form_flow_new(nevh_work *w, size_t count,
                                      const double times[]) {
     nevh__form_flow *f = nevh__array(1, sizeof *f);
@@ -288,92 +305,15 @@ nevh__form_flow *nevh__form_flow_new(nevh_work *w, size_t count,
         f->n_times = count;
         f->times = nevh__copy(times, count, sizeof *times);
     }
-    if (!f || !f->times || !plan_flow(f, w->field)) {
-        nevh__form_flow_free(f);
-        nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
-        return NULL;
-    }
-    if (f->a)
+    int status =
+        f && f->times && plan_flow(f, w->field) ? NEVH_OK : NEVH_ENOMEM;
+    if (!status)
+        status = f->a ? plan_bodies(f, w) : NEVH_ESTRUCT;
+    if (!status)
         return f;
-    nevh_work_fail(w, NEVH_ESTRUCT,
-                   "%s moves connected coordinates by one matrix of at most %d "
-                   "of them, but the form connects %zu",
-                   w->integrator->name, MOST_BLOCK, largest_block(f));
+    flow_refuse(w, f, status);
     nevh__form_flow_free(f);
     return NULL;
-}
-
-/* product = x y, all m x (m + 1), the row below being 0. */
-static void multiply(size_t m, const nevh__extended x[],
-                     const nevh__extended y[], nevh__extended product[]) {
-    size_t row = m + 1;
-    memset(product, 0, m * row * sizeof *product);
-    for (size_t i = 0; i < m; i++)
-        for (size_t k = 0; k < m; k++) {
-            nevh__extended factor = x[i * row + k];
-            for (size_t j = 0; factor != 0 && j <= m; j++)
-                product[i * row + j] += factor * y[k * row + j];
-        }
-}
-
-static nevh__extended norm(size_t m, const nevh__extended x[]) {
-    nevh__extended most = 0;
-    for (size_t i = 0; i < m; i++) {
-        nevh__extended sum = 0;
-        for (size_t j = 0; j < m; j++)
-            sum += fabs(x[i * (m + 1) + j]);
-        most = fmax(most, sum);
-    }
-    return most;
-}
-
-/* exp(t a) - 1 to room; returns it. */
-static const nevh__extended *exponential(const block *b, double t,
-                                         nevh__extended *room) {
-    size_t m = 2 * b->count, size = m * (m + 1);
-    nevh__extended *x = room, *sum = x + size, *product = sum + size;
-    int halvings = 0;
-    nevh__extended length = norm(m, b->a) * fabs(t);
-    for (; length > 0.5 && halvings < MOST_HALVINGS; halvings++)
-        length /= 2;
-    for (size_t i = 0; i < size; i++) {
-        x[i] = length <= 0.5 ? ldexp(b->a[i] * t, -halvings) : NAN;
-        sum[i] = x[i] / TERMS;
-    }
-    for (int k = TERMS - 1; k > 0; k--) {
-        multiply(m, x, sum, product);
-        for (size_t i = 0; i < size; i++)
-            sum[i] = (x[i] + product[i]) / k;
-    }
-    for (; halvings; halvings--) {
-        multiply(m, sum, sum, product);
-        for (size_t i = 0; i < size; i++)
-            sum[i] = 2 * sum[i] + product[i];
-    }
-    return sum;
-}
-
-/* The matrix to a set, without what is below the last digits of its row. */
-static void store(const block *b, const nevh__extended d[], double high[],
-                  double low[], size_t first[], size_t last[]) {
-    size_t m = 2 * b->count;
-    for (size_t j = 0; j <= m; j++)
-        first[j] = last[j] = 0;
-    for (size_t i = 0; i < m; i++) {
-        const nevh__extended *row = d + i * (m + 1);
-        nevh__extended most = 0;
-        for (size_t j = 0; j < m; j++)
-            most = fmax(most, fabs(row[j]));
-        for (size_t j = 0; j <= m; j++) {
-            bool counts = j == m ? row[j] != 0 : fabs(row[j]) > most * 0x1p-64;
-            int unit = b->units[i] - (j < m ? b->units[j] : 0);
-            nevh__extended x = counts ? ldexp(row[j], unit) : 0;
-            high[j * m + i] = (double)x;
-            low[j * m + i] = (double)(x - (double)x);
-            first[j] = counts && !last[j] ? i : first[j];
-            last[j] = counts ? i + 1 : last[j];
-        }
-    }
 }
 
 void nevh__form_flow_set(nevh__form_flow *f, double h) {
@@ -392,9 +332,11 @@ void nevh__form_flow_set(nevh__form_flow *f, double h) {
             size_t at = t * f->size + b->at,
                    column = t * f->columns + b->column;
             if (b->k == 0)
-                store(b, exponential(b, f->times[t] * h, f->room), x->high + at,
-                      x->low + at, x->first + column, x->last + column);
-            if (i < f->n_bound)
+                nevh__form_block_store(b, f->times[t] * h, f->room,
+                                       x->high + at, x->low + at,
+                                       x->first + column, x->last + column);
+            if (i < f->n_bound ||
+                (f->bodies && nevh__hierarchy_moves(f->bodies, b->index[0])))
                 continue;
             x->free[2 * t * f->n + b->index[0]] = x->high[at + 2];
             x->free[(2 * t + 1) * f->n + b->index[0]] = x->low[at + 2];
@@ -478,4 +420,16 @@ void nevh__form_flow_add(const nevh__form_flow *f, size_t which, size_t width,
     add_blocks(f, which, width, q, p, dq, dp);
     if (f->n_bound < f->n_blocks)
         add_free(f, which, width, p, dq);
+    if (f->bodies)
+        nevh__hierarchy_add(f->bodies, f->times[which] * f->sets[f->now].h,
+                            width, q, p, dq, dp);
+}
+
+const nevh__hierarchy *nevh__form_flow_bodies(const nevh__form_flow *f) {
+    return f->bodies;
+}
+
+void nevh__form_flow_lessen(const nevh__form_flow *f, size_t width,
+                            const double q[], double dh_dq[]) {
+    nevh__hierarchy_lessen(f->bodies, width, q, dh_dq);
 }

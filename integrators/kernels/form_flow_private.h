@@ -49,5 +49,12 @@ void nevh__form_flow_set(nevh__form_flow *, double h);
 void nevh__form_flow_add(const nevh__form_flow *, size_t which, size_t width,
                          const double q[], const double p[], double dq[],
                          double dp[]);
+/* The bodies that move about one another, or NULL. */
+const struct nevh__hierarchy *nevh__form_flow_bodies(const nevh__form_flow *);
+/* The bodies of a scheme by parts; NULL, too, for other schemes. */
+const struct nevh__hierarchy *nevh__parts_hierarchy(const nevh_work *);
+/* Takes what A has of their attractions from a gradient with all of them. */
+void nevh__form_flow_lessen(const nevh__form_flow *, size_t width,
+                            const double q[], double dh_dq[]);
 
 #endif

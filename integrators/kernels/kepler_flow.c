@@ -24,6 +24,9 @@ enum { MOST_TRIALS = 100, TERMS = 9 };
 static const nevh__extended turn = 6.283185307179586476925L;
 /* The step of a trial, by s: the next one has the last digits. */
 static const nevh__extended close_enough = 1e-7;
+static const nevh__extended rounding = sizeof(nevh__extended) > sizeof(double)
+                                           ? 0x1p-62
+                                           : 0x1p-51;
 
 typedef struct {
     nevh__extended g0, g1, g2, g3;
@@ -89,13 +92,14 @@ static nevh__extended solve(const orbit *o, nevh__extended t) {
         nevh__extended next =
             s - 5 * off / (r + sqrt(fabs(16 * r * r - 20 * off * dr)));
         *(off < 0 ? &low : &high) = s;
-        if (off == 0)
+        if (off == 0 || next == s)
             break;
-        if (!(next > low && next < high && off < t))
+        bool inside = next > low && next < high && off < t;
+        if (!inside)
             next = high < INFINITY ? low + (high - low) / 2 : 2 * s;
         nevh__extended by = fabs(next - s);
         s = next;
-        if (by <= close_enough * s)
+        if (by <= (inside ? close_enough : rounding) * s)
             break;
     }
     return s;

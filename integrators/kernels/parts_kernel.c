@@ -1,6 +1,7 @@
 /* nevh: the kernel of steps by parts.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "form_flow_private.h"
+#include "hierarchy_private.h"
 #include "parts_step.h"
 #include "splitting_private.h"
 #include "work/work_private.h"
@@ -70,6 +71,8 @@ static int plan_operations(nevh_work *w, size_t substeps, double weights[]) {
     o->set = nevh__form_flow_set;
     o->add = nevh__form_flow_add;
     o->flow = nevh__form_flow_new(w, find_flows(o, weights), weights);
+    if (o->flow && nevh__form_flow_bodies(o->flow))
+        o->lessen = nevh__form_flow_lessen;
     return o->flow ? NEVH_OK : w->report->status;
 }
 
@@ -103,6 +106,13 @@ static int plan(nevh_work *w) {
     w->memory_rows = (2 + o->kept) * w->n + (o->kept > 0);
     w->scratch_size = (4 + NEVH__KICKS) * w->size + w->width;
     return NEVH_OK;
+}
+
+const nevh__hierarchy *nevh__parts_hierarchy(const nevh_work *w) {
+    const nevh__parts_scheme *o = w->plan;
+    return o && w->integrator->needs & NEVH_PARTS
+               ? nevh__form_flow_bodies(o->flow)
+               : NULL;
 }
 
 /* The includer's data of a step. */
@@ -155,6 +165,8 @@ NEVH__INLINE int nevh__parts_slope(const nevh__parts_step *x, size_t size,
         status = o->kind == NEVH__OUTER_KICK
                      ? nevh__work_gradient_padded(w, w->width, &at)
                      : nevh__work_inner_gradient(w, &at);
+    if (!status && !all && o->kind == NEVH__OUTER_KICK && x->scheme->lessen)
+        x->scheme->lessen(x->scheme->flow, w->width, x->point[0], slope);
     for (size_t i = 0; !status && first && i < size; i++)
         if (has[i % w->width] != 0)
             slope[i] = kept_slopes(w, o->kind)[i];

@@ -25,6 +25,9 @@ typedef struct {
     void (*set)(struct nevh__form_flow *, double h);
     void (*add)(const struct nevh__form_flow *, size_t which, size_t width,
                 const double q[], const double p[], double dq[], double dp[]);
+    /* nevh__form_flow_lessen, of outer kicks; NULL: slopes are those of B */
+    void (*lessen)(const struct nevh__form_flow *, size_t width,
+                   const double q[], double dh_dq[]);
 } nevh__parts_scheme;
 
 #endif

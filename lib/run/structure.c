@@ -1,5 +1,7 @@
 /* nevh: does a scheme fit a Hamiltonian?
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "kernels/form_flow_private.h"
+#include "kernels/hierarchy_private.h"
 #include "run/stepper_private.h"
 #include "system/probe_private.h"
 #include <stdio.h>
@@ -133,6 +135,28 @@ int nevh__choose_parts(nevh_stepper *s, nevh__part_role **part) {
     if (status == NEVH_ENOMEM)
         return nevh__no_memory(&s->report);
     return status ? refuse_parts(s, &fault) : NEVH_OK;
+}
+
+size_t nevh_stepper_hierarchy(const nevh_stepper *s, char text[], size_t size,
+                              bool *whole) {
+    const nevh__hierarchy *h =
+        s && s->planned ? nevh__parts_hierarchy(&s->work) : NULL;
+    if (whole)
+        *whole = h && nevh__hierarchy_is_whole(h);
+    if (size)
+        *text = 0;
+    return h ? nevh__hierarchy_words(h, s->work.system, text, size) : 0;
+}
+
+int nevh_stepper_kick(nevh_stepper *s, double t, const double q[],
+                      const double p[], double dh_dq[]) {
+    if (!s || !s->planned || s->work.width != 1 || !q || !p || !dh_dq)
+        return NEVH_EINVAL;
+    const nevh__hierarchy *h = nevh__parts_hierarchy(&s->work);
+    int status = nevh_field_gradient(s->work.field, 1, &t, q, p, dh_dq, NULL);
+    if (h && !status)
+        nevh__hierarchy_lessen(h, 1, q, dh_dq);
+    return status;
 }
 
 static int check_separable(nevh_stepper *s, const double q[],

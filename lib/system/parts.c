@@ -175,9 +175,16 @@ static void take_values(const trial *x, double distance[]) {
     }
 }
 
+enum { TRIALS_FAR = 7 };
+static const int far_powers[TRIALS_FAR] = {-200, -60, -20, 0, 20, 60, 200};
+
+/* h is -k/distance. */
+static bool is_inverse(double k, double h, double distance) {
+    return fabs(h * distance + k) <= roundings * DBL_EPSILON * fabs(k);
+}
+
 bool nevh__centre_find(const nevh__term_entry *term, size_t instance, double *k,
                        double room[]) {
-    static const int powers[] = {-200, -60, -20, 0, 20, 60, 200};
     double distance[NEVH__LANES];
     uint64_t random = 1;
     const nevh_term *decl = &term->decl;
@@ -187,16 +194,93 @@ bool nevh__centre_find(const nevh__term_entry *term, size_t instance, double *k,
     x.z[0] = 1;
     take_values(&x, distance);
     *k = -x.h[0];
-    for (size_t i = 0; i < sizeof powers / sizeof *powers; i++) {
+    for (size_t i = 0; i < TRIALS_FAR; i++) {
         for (size_t j = 0; j < NEVH__LANES * x.nv; j++)
-            x.z[j] = ldexp(nevh__random(&random), powers[i]);
+            x.z[j] = ldexp(nevh__random(&random), far_powers[i]);
         take_values(&x, distance);
         for (size_t lane = 0; lane < NEVH__LANES; lane++)
-            if (!(fabs(x.h[lane] * distance[lane] + *k) <=
-                  roundings * DBL_EPSILON * fabs(*k)))
+            if (!is_inverse(*k, x.h[lane], distance[lane]))
                 return false;
     }
     return *k != 0 && isfinite(*k);
+}
+
+/* At lane 0 all coordinates are apart by whole numbers; at lane 1 + j coordinates i and
+   j are shifted. */
+static void shift_two(const trial *x, size_t i) {
+    for (size_t j = 0; j < x->nv; j++)
+        for (size_t lane = 0; lane < NEVH__LANES; lane++) {
+            bool shifted = lane && (j == i || j + 1 == lane);
+            x->z[j * NEVH__LANES + lane] =
+                (double)(3 * j + j * j % 3 + 1) + (shifted ? 0.5 : 0);
+        }
+}
+
+/* Coordinates of two points are beside one another where H does not change if both
+   are shifted. */
+static bool find_beside(const trial *x, size_t beside[]) {
+    double distance[NEVH__LANES];
+    bool fine = true;
+    for (size_t i = 0; i < x->nv; i++) {
+        beside[i] = i;
+        shift_two(x, i);
+        take_values(x, distance);
+        double most = roundings * DBL_EPSILON * fabs(x->h[0]);
+        for (size_t j = 0; j < x->nv; j++)
+            if (j != i && fabs(x->h[j + 1] - x->h[0]) <= most)
+                beside[i] = j;
+    }
+    for (size_t i = 0; i < x->nv; i++)
+        fine = fine && beside[i] != i && beside[beside[i]] == i;
+    return fine;
+}
+
+/* Between two points in a lane. */
+static double apart(const trial *x, const size_t beside[], size_t lane) {
+    const double *z = x->z + lane;
+    double sum = 0;
+    for (size_t j = 0; j < x->nv; j++)
+        if (beside[j] > j)
+            sum = nevh_simd_hypot(sum, z[j * NEVH__LANES] -
+                                           z[beside[j] * NEVH__LANES]);
+    return sum;
+}
+
+bool nevh__pair_find(const nevh__term_entry *term, size_t instance, double *k,
+                     size_t beside[NEVH__PAIR], double room[]) {
+    double distance[NEVH__LANES];
+    uint64_t random = 1;
+    const nevh_term *decl = &term->decl;
+    if ((decl->nq != 2 * NEVH__PLANE && decl->nq != 2 * NEVH__SPACE) ||
+        decl->np || decl->time)
+        return false;
+    trial x = parts_lay_out(term, instance, room);
+    if (!find_beside(&x, beside))
+        return false;
+    *k = NAN;
+    for (size_t i = 0; i < TRIALS_FAR; i++) {
+        for (size_t j = 0; j < NEVH__LANES * x.nv; j++)
+            x.z[j] = ldexp(nevh__random(&random), far_powers[i]);
+        take_values(&x, distance);
+        if (!i)
+            *k = -x.h[0] * apart(&x, beside, 0);
+        for (size_t lane = 0; lane < NEVH__LANES; lane++)
+            if (!is_inverse(*k, x.h[lane], apart(&x, beside, lane)))
+                return false;
+    }
+    return *k != 0 && isfinite(*k);
+}
+
+/* True if all instances are; false, too, if memory is out. */
+static bool is_pairs(const nevh__term_entry *term) {
+    const nevh_term *decl = &term->decl;
+    size_t beside[NEVH__PAIR];
+    double k, *room = nevh__array(nevh__form_room(decl), sizeof *room);
+    bool all = room;
+    for (size_t i = 0; all && i < decl->count; i++)
+        all = nevh__pair_find(term, i, &k, beside, room);
+    free(room);
+    return all;
 }
 
 /* form, centre: out, true if all instances are forms, or -k/|q|. */
@@ -234,12 +318,16 @@ static int parts_choose(const nevh_system *s, const nevh__term_entry *term,
     return status;
 }
 
-/* NULL: none. */
+/* NULL: none.  Pairs that are to be fast are the scheme's to judge, which knows a
+   state. */
 static const char *reason_of(const nevh_system *s, const nevh__term_entry *term,
                              bool substeps, nevh__part_role part) {
     const nevh_term *decl = &term->decl;
     nevh_speed speed = s->effects[term->effect].speed;
     if (part != NEVH__KICK || !(decl->nq + decl->np))
+        return NULL;
+    if (speed == NEVH_FAST && !decl->np && decl->nq >= 2 * NEVH__PLANE &&
+        is_pairs(term))
         return NULL;
     if (speed == NEVH_FAST)
         return substeps && decl->time ? "is to be fast and reads the time"

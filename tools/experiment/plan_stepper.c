@@ -20,13 +20,26 @@ nevh_options plan_options(const plan *p, const char *gradient) {
                           .native_cache = p->no_cache ? "" : NULL};
 }
 
+/* Two bodies that move about one another. */
+static bool are_two_bodies(const plan *p) {
+    enum { MOST = 6 }; /* coordinates */
+    bool whole = false;
+    if (p->n > MOST)
+        return false;
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    nevh_stepper *s = nevh_stepper_new(p->system, nevh_wisdom_holman, &o);
+    nevh_stepper_hierarchy(s, NULL, 0, &whole);
+    nevh_stepper_free(s);
+    return whole;
+}
+
 bool plan_parts_are_all(const plan *p) {
     size_t fast = 0, slow = 0, found = 0;
     for (size_t i = 0; i < nevh_system_effect_count(p->system); i++) {
         if (nevh_system_parts(p->system, nevh_system_effect_name(p->system, i),
                               &fast, &slow, NULL) ||
             slow)
-            return false;
+            return are_two_bodies(p);
         found += fast;
     }
     return found > 0;

@@ -162,21 +162,8 @@ static int first_place(const search *s, const study *l) {
     return k;
 }
 
-/* True if all of H is moved exactly: not only the energy is kept at any step. */
-static bool is_solved(const search *s, const study *l) {
-    const nevh_system *system = s->plan.system;
-    size_t kicks = 0;
-    for (size_t i = 0; i < nevh_system_effect_count(system); i++) {
-        size_t others = 0;
-        nevh_system_parts(system, nevh_system_effect_name(system, i), NULL,
-                          &others, NULL);
-        kicks += others;
-    }
-    return nevh_integrator_needs(l->scheme) & NEVH_PARTS && !kicks;
-}
-
 static void find_out_whether_kept(search *s, study *l) {
-    l->keeps = !s->plan.by_state && !is_solved(s, l) &&
+    l->keeps = !s->plan.by_state && !plan_is_exact(&s->plan, l->scheme) &&
                (nevh_integrator_preserves_energy(l->scheme) == NEVH_YES ||
                 keeps_at_any_step(s, l));
 }

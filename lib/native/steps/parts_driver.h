@@ -10,6 +10,13 @@
 
 #include "kernels/parts_step.h"
 
+/* Rows of numbers side by side have their width; a long state is one row. */
+#ifdef NEVH__LOOPS
+enum { NEVH__ROW = 1 };
+#else
+enum { NEVH__ROW = sizeof(nevh__number) / sizeof(double) };
+#endif
+
 struct nevh__parts_owner {
     const double *N;
     nevh__number *bad;
@@ -25,25 +32,22 @@ NEVH__INLINE int nevh__parts_slope(const nevh__parts_step *x, size_t size,
         NEVH__EACH(i, 1, size) {
             slope[i] = with->kept[o->kind * DOF + i];
         }
-    } else if (o->kind == NEVH__OUTER_KICK)
+    } else if (o->kind == NEVH__OUTER_KICK) {
         *with->bad +=
             kick_slope(with->N, t, x->point[0], x->point[1], slope NEVH__WHOLE);
-    else
+        if (x->scheme->lessen)
+            x->scheme->lessen(x->scheme->flow, NEVH__ROW,
+                              (const double *)x->point[0], (double *)slope);
+    } else
         *with->bad += inner_slope(with->N, t, x->point[0], x->point[1],
                                   slope NEVH__WHOLE);
     return 0;
 }
 
-/* Rows of numbers side by side have their width; a long state is one row. */
 NEVH__INLINE int nevh__parts_flow(const nevh__parts_step *x,
                                   const nevh__part_operation *o, double t) {
-#ifdef NEVH__LOOPS
-    size_t width = 1;
-#else
-    size_t width = sizeof(nevh__number) / sizeof(double);
-#endif
     (void)t;
-    x->scheme->add(x->scheme->flow, o->which, width,
+    x->scheme->add(x->scheme->flow, o->which, NEVH__ROW,
                    (const double *)x->point[0], (const double *)x->point[1],
                    (double *)x->change[0], (double *)x->change[1]);
     return 0;
