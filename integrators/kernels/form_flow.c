@@ -286,9 +286,9 @@ static int flow_refuse(nevh_work *w, const nevh__form_flow *f, int status) {
     if (f->a)
         return nevh_work_fail(
             w, status,
-            "%s is to move bodies fast, but these do not move about one "
-            "another: each has one mass and no other form, at most %d are "
-            "apart at the start, and coordinates of each come in one order",
+            "%s cannot move the bodies of fast effects about one another: each "
+            "needs one mass, p^2/2m alone, a place of its own at the start and "
+            "coordinates in one order, and there may be %d of them",
             name, NEVH__MOST_BODIES);
     return nevh_work_fail(
         w, status,

@@ -35,8 +35,10 @@ struct nevh__hierarchy {
     group groups[MOST_GROUPS];
 };
 
+/* Padded with zeros to a vector. */
+enum { WIDE = 4 };
 typedef struct {
-    double x[NEVH__SPACE];
+    double x[WIDE];
 } point;
 
 /* A search for bodies. */
@@ -149,18 +151,18 @@ static int find_bodies(finding *f, bool *found) {
 }
 
 /* Centres of mass of all groups, from those of bodies. */
-static void find_centres(const nevh__hierarchy *h, point at[]) {
+NEVH_SIMD static void find_centres(const nevh__hierarchy *h, point at[]) {
     for (size_t g = h->n_bodies; g < h->n_groups; g++) {
         const group *x = &h->groups[g];
         const point *a = &at[x->of[0]], *b = &at[x->of[1]];
-        for (size_t k = 0; k < NEVH__SPACE; k++)
+        for (size_t k = 0; k < WIDE; k++)
             at[g].x[k] = x->share[0] * a->x[k] + x->share[1] * b->x[k];
     }
 }
 
 static inline point between(const point at[], size_t a, size_t b) {
     point r;
-    for (size_t k = 0; k < NEVH__SPACE; k++)
+    for (size_t k = 0; k < WIDE; k++)
         r.x[k] = at[b].x[k] - at[a].x[k];
     return r;
 }
@@ -180,6 +182,13 @@ static void load_pairs(const nevh__hierarchy *h, const point at[], size_t first,
         for (size_t k = 0; k < NEVH__SPACE; k++)
             rows[k * NEVH__LANES + lane] = r.x[k];
     }
+}
+
+/* A column of rows, times a factor. */
+static inline point point_of(const double rows[], size_t lane, double factor) {
+    const double *x = rows + lane;
+    return (point){{factor * x[0], factor * x[NEVH__LANES],
+                    factor * x[2 * NEVH__LANES], 0}};
 }
 
 static double length(point r) {
@@ -267,22 +276,20 @@ static void find_pulls(const nevh__hierarchy *h, const point at[],
             k[lane] = pair_of(h, first + lane)->k;
         take_pulls(k, r, pulls);
         for (size_t i = first; i < first + NEVH__LANES && i < pairs; i++)
-            for (size_t c = 0; c < NEVH__SPACE; c++)
-                pull[i].x[c] =
-                    pulls[i - first] * r[c * NEVH__LANES + i - first];
+            pull[i] = point_of(r, i - first, pulls[i - first]);
     }
 }
 
 /* Adds to the slopes of bodies those of the motion about one another, times sign. */
-static void add_slopes(const nevh__hierarchy *h, const point at[], double sign,
-                       point slope[]) {
+NEVH_SIMD static void add_slopes(const nevh__hierarchy *h, const point at[],
+                                 double sign, point slope[]) {
     point of[MOST_GROUPS], pull[MOST_BODIES];
     find_pulls(h, at, pull);
     for (size_t g = h->n_groups; g-- > h->n_bodies;) {
         const group *x = &h->groups[g];
         point *a = &of[x->of[0]], *b = &of[x->of[1]];
         const point *own = &pull[g - h->n_bodies];
-        for (size_t k = 0; k < NEVH__SPACE; k++) {
+        for (size_t k = 0; k < WIDE; k++) {
             double all = x->inside ? of[g].x[k] : 0;
             a->x[k] = x->share[0] * all - own->x[k];
             b->x[k] = x->share[1] * all + own->x[k];
@@ -391,19 +398,18 @@ static void move_eight(const nevh__hierarchy *h, double t, size_t first,
     for (size_t i = first; i < first + NEVH__LANES && i < pairs; i++) {
         if (good[i - first] == 0)
             move_pair(m, t, i - first);
-        for (size_t k = 0; k < NEVH__SPACE; k++) {
-            m->by[i].x[k] = m->dr[k * NEVH__LANES + i - first];
-            m->faster[i].x[k] = m->dv[k * NEVH__LANES + i - first];
-        }
+        m->by[i] = point_of(m->dr, i - first, 1);
+        m->faster[i] = point_of(m->dv, i - first, 1);
     }
 }
 
 /* Replaces centres and velocities by their changes. */
-static void move_groups(const nevh__hierarchy *h, double t, motion *m) {
+NEVH_SIMD static void move_groups(const nevh__hierarchy *h, double t,
+                                  motion *m) {
     for (size_t g = h->n_groups; g-- > 0;) {
         const group *x = &h->groups[g];
         point *r = &m->centre[g], *v = &m->velocity[g];
-        for (size_t k = 0; !x->inside && k < NEVH__SPACE; k++) {
+        for (size_t k = 0; !x->inside && k < WIDE; k++) {
             r->x[k] = t * v->x[k];
             v->x[k] = 0;
         }
@@ -415,7 +421,7 @@ static void move_groups(const nevh__hierarchy *h, double t, motion *m) {
             double part = side ? x->share[0] : -x->share[1];
             point *to = &m->centre[x->of[side]];
             point *speed = &m->velocity[x->of[side]];
-            for (size_t k = 0; k < NEVH__SPACE; k++) {
+            for (size_t k = 0; k < WIDE; k++) {
                 to->x[k] = r->x[k] + part * by->x[k];
                 speed->x[k] = v->x[k] + part * faster->x[k];
             }
@@ -428,7 +434,7 @@ static void load(const nevh__hierarchy *h, size_t width, size_t lane,
                  const double from[], bool by_mass, point to[]) {
     for (size_t i = 0; i < h->n_bodies; i++) {
         double factor = by_mass ? h->inverse_mass[i] : 1;
-        to[i].x[NEVH__SPACE - 1] = 0;
+        to[i] = (point){{0}};
         for (size_t k = 0; k < h->space; k++)
             to[i].x[k] = from[h->place[i][k] * width + lane] * factor;
     }

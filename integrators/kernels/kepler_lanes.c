@@ -1,7 +1,7 @@
 /* nevh: the motion of eight bodies about centres, over short parts of their periods.
 
    As kepler_flow.c, in doubles and without branches: Kepler's equation is expanded for
-   a first guess, and solved by so many steps of Laguerre and Conway.  Changes are made, so
+   a first guess, and solved by two steps of Laguerre and Conway, or four.  Changes are made, so
    that their roundings are small where the step is.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "kepler_flow_private.h"
@@ -77,35 +77,49 @@ NEVH__INLINE double is_good(const orbit *o, const universal *g, double s,
     return fine ? 1 : 0;
 }
 
-NEVH_SIMD static void take_changes(const double mu[], double t,
-                                   const double r[], const double v[],
-                                   double dr[], double dv[], double good[]) {
+/* Moves one of eight.  corrections: a constant */
+NEVH__INLINE void take_lane(int corrections, size_t i, const double mu[],
+                            double t, const double r[], const double v[],
+                            double dr[], double dv[], double good[]) {
     enum { X = 0, Y = NEVH__LANES, Z = 2 * NEVH__LANES };
-    NEVH_LANES(i, NEVH__LANES) {
-        double x = r[X + i], y = r[Y + i], z = r[Z + i];
-        double u = v[X + i], w = v[Y + i], q = v[Z + i];
-        orbit o = {mu[i], nevh_simd_sqrt(x * x + y * y + z * z),
-                   x * u + y * w + z * q, 0};
-        o.b = 2 * o.mu / o.r - (u * u + w * w + q * q);
-        double s = first_guess(&o, t);
-        universal g = functions(o.b, s);
-        s += correction(&o, &g, t);
-        g = functions(o.b, s);
-        s += correction(&o, &g, t);
-        g = functions(o.b, s);
-        double by = correction(&o, &g, t);
+    double x = r[X + i], y = r[Y + i], z = r[Z + i];
+    double u = v[X + i], w = v[Y + i], q = v[Z + i], by = 0;
+    orbit o = {mu[i], nevh_simd_sqrt(x * x + y * y + z * z),
+               x * u + y * w + z * q, 0};
+    o.b = 2 * o.mu / o.r - (u * u + w * w + q * q);
+    double s = first_guess(&o, t);
+    universal g = functions(o.b, s);
+    NEVH_UNROLL
+    for (int k = 0; k < corrections; k++) {
+        by = correction(&o, &g, t);
         s += by;
         g = functions(o.b, s);
-        double now = o.r * g.g0 + o.slope * g.g1 + o.mu * g.g2;
-        double f = -o.mu * g.g2 / o.r, ahead = o.r * g.g1 + o.slope * g.g2;
-        double turn = -o.mu * g.g1 / o.r / now, slower = -o.mu * g.g2 / now;
-        dr[X + i] = f * x + ahead * u;
-        dr[Y + i] = f * y + ahead * w;
-        dr[Z + i] = f * z + ahead * q;
-        dv[X + i] = turn * x + slower * u;
-        dv[Y + i] = turn * y + slower * w;
-        dv[Z + i] = turn * z + slower * q;
-        good[i] = is_good(&o, &g, s, by, now);
+    }
+    double now = o.r * g.g0 + o.slope * g.g1 + o.mu * g.g2;
+    double f = -o.mu * g.g2 / o.r, ahead = o.r * g.g1 + o.slope * g.g2;
+    double turn = -o.mu * g.g1 / o.r / now, slower = -o.mu * g.g2 / now;
+    dr[X + i] = f * x + ahead * u;
+    dr[Y + i] = f * y + ahead * w;
+    dr[Z + i] = f * z + ahead * q;
+    dv[X + i] = turn * x + slower * u;
+    dv[Y + i] = turn * y + slower * w;
+    dv[Z + i] = turn * z + slower * q;
+    good[i] = is_good(&o, &g, s, by, now);
+}
+
+NEVH_SIMD static void correct_twice(const double mu[], double t,
+                                    const double r[], const double v[],
+                                    double dr[], double dv[], double good[]) {
+    NEVH_LANES(i, NEVH__LANES) {
+        take_lane(2, i, mu, t, r, v, dr, dv, good);
+    }
+}
+
+NEVH_SIMD static void correct_more(const double mu[], double t,
+                                   const double r[], const double v[],
+                                   double dr[], double dv[], double good[]) {
+    NEVH_LANES(i, NEVH__LANES) {
+        take_lane(4, i, mu, t, r, v, dr, dv, good);
     }
 }
 
@@ -113,5 +127,10 @@ NEVH_SIMD static void take_changes(const double mu[], double t,
 void nevh__kepler_changes(const double mu[], double t, const double r[],
                           const double v[], double dr[], double dv[],
                           double good[]) {
-    take_changes(mu, t, r, v, dr, dv, good);
+    double fewest = 1;
+    correct_twice(mu, t, r, v, dr, dv, good);
+    for (size_t i = 0; i < NEVH__LANES; i++)
+        fewest = good[i] < fewest ? good[i] : fewest;
+    if (fewest == 0)
+        correct_more(mu, t, r, v, dr, dv, good);
 }
