@@ -123,7 +123,7 @@ bench-hashes: all
 	NEVH_SCENES=$(srcdir)/scenes $(SHELL) $(srcdir)/bench/hashes.sh \
 	  ./tools/nevh$(EXEEXT)
 
-EXTRA_DIST += bench/hashes.sh bench/ensembles.py bench/promises.py bench/certain.py bench/lanes.sh bench/speedup.sh bench/recommend.sh bench/answers.sh bench/integrable.sh bench/exponents.sh bench/exponents bench/orbits bench/textbook \
+EXTRA_DIST += bench/hashes.sh bench/ensembles.py bench/promises.py bench/certain.py bench/lanes.sh bench/parts.sh bench/parts bench/speedup.sh bench/recommend.sh bench/answers.sh bench/integrable.sh bench/exponents.sh bench/exponents bench/orbits bench/textbook \
 	bench/blind bench/kinks
 CLEANFILES += bench/results-answers.csv bench/verdicts$(EXEEXT) bench/wrong-verdicts
 DISTCLEANFILES = bench/long-runs

@@ -11,6 +11,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "hierarchy_private.h"
 #include "kepler_flow_private.h"
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -64,6 +65,11 @@ bool nevh__hierarchy_moves(const nevh__hierarchy *h, size_t coordinate) {
     return false;
 }
 
+/* Up to rounding: of p_x^2/(2*m) + p_y^2/2/m, say. */
+static bool is_same_mass(double a, double b) {
+    return fabs(a - b) <= 4 * DBL_EPSILON * fabs(a);
+}
+
 /* The body that has these coordinates, which is added if all of them are free;
    MOST_BODIES: there is none. */
 static size_t body_of(finding *f, const size_t place[]) {
@@ -73,7 +79,7 @@ static size_t body_of(finding *f, const size_t place[]) {
         if (f->body[place[k]] != is ||
             (is && h->place[is - 1][k] != place[k]) ||
             !(f->inverse_mass[place[k]] > 0) ||
-            f->inverse_mass[place[k]] != f->inverse_mass[place[0]])
+            !is_same_mass(f->inverse_mass[place[k]], f->inverse_mass[place[0]]))
             return MOST_BODIES;
     if (is || h->n_bodies == MOST_BODIES)
         return is ? is - 1 : MOST_BODIES;
@@ -97,7 +103,8 @@ static bool take_pair(finding *f, const nevh__planned *term, size_t instance,
         double mass = f->inverse_mass[a], first = f->inverse_mass[place[0][0]];
         if (a > b)
             continue;
-        bool other = space && mass != first && f->inverse_mass[b] == first;
+        bool other = space && !is_same_mass(mass, first) &&
+                     is_same_mass(f->inverse_mass[b], first);
         place[0][space] = other ? b : a;
         place[1][space++] = other ? a : b;
     }
