@@ -18,6 +18,15 @@ static size_t most_panels(const nevh_loop *l) {
     return points / NEVH__NODES;
 }
 
+/* States are kept where those of all panels take no more bytes than that. */
+static const double most_kept = 0x1p26;
+
+static bool keeps_states(const nevh_loop *l) {
+    double numbers = 2 * NEVH__NODES * (double)l->n * (double)l->options.times;
+    return l->options.shapes ||
+           numbers * sizeof(double) * (double)most_panels(l) <= most_kept;
+}
+
 /* Planning. */
 
 /* P_k(x) for k < NEVH__NODES. */
@@ -140,10 +149,17 @@ nevh_loop *nevh_loop_new(const nevh_system *s, const nevh_integrator *scheme,
         return NULL;
     l->options = *loop;
     l->n = nevh_system_dof(s);
+    l->keeps = keeps_states(l);
     if (!loop_check_options(l, o, scheme) && !plan_corners(l) &&
         !loop_plan_memory(l) && !plan_nodes(l))
         plan_stepper(l, s, scheme, *o);
     return l;
+}
+
+static void queue_clear(nevh__queue *all) {
+    for (size_t i = all->front; i < all->count; i++)
+        free(all->item[i].states);
+    free(all->item);
 }
 
 void nevh_loop_free(nevh_loop *l) {
@@ -152,7 +168,7 @@ void nevh_loop_free(nevh_loop *l) {
     for (size_t i = 0; l->shape && i < l->panels; i++)
         free(l->shape[i].states);
     for (size_t i = 0; l->memory && i < l->options.times; i++)
-        free(l->rough[i].item);
+        queue_clear(&l->rough[i]);
     nevh_stepper_free(l->stepper);
     free(l->corners);
     free(l->steps);
@@ -165,8 +181,7 @@ NEVH__REPORTS(loop)
 
 /* The whole. */
 
-static int put(nevh_loop *l, nevh__queue *to, double from, double to_s,
-               size_t parts) {
+static int put(nevh_loop *l, nevh__queue *to, nevh__panel at) {
     if (to->count == to->room) {
         size_t room = 2 * to->room + 16;
         nevh__panel *more = nevh__grow(to->item, room, sizeof *more);
@@ -175,7 +190,7 @@ static int put(nevh_loop *l, nevh__queue *to, double from, double to_s,
         to->item = more;
         to->room = room;
     }
-    to->item[to->count++] = (nevh__panel){from, to_s, parts, NULL};
+    to->item[to->count++] = at;
     return NEVH_OK;
 }
 
@@ -228,7 +243,8 @@ static int loop_accept(nevh_loop *l, nevh__panel at) {
         }
         l->shape = more;
         l->shape[l->panels] = at;
-    }
+    } else
+        free(at.states);
     l->panels++;
     return NEVH_OK;
 }
@@ -236,20 +252,18 @@ static int loop_accept(nevh_loop *l, nevh__panel at) {
 /* Accepts a panel that is smooth at all times, or that is the last resort; else
    it waits to be cut. */
 static int loop_take(nevh_loop *l, nevh__panel at, bool last) {
-    if (l->options.shapes)
-        at.states = nevh__array(2 * l->n * NEVH__NODES * l->options.times,
-                                sizeof(double));
-    if (l->options.shapes && !at.states)
-        return nevh__no_memory(&l->report);
     l->taken_times = 0;
     int status = nevh__loop_follow(
-        l, &at, last ? nevh__loop_keep : nevh__loop_keep_smooth);
+        l, &at, last ? nevh__loop_integrate : nevh__loop_integrate_smooth);
     if (!status && (last || l->taken_times >= l->reach))
         return loop_accept(l, at);
-    free(at.states);
-    return status ? status
-                  : put(l, &l->rough[l->taken_times], at.from, at.to,
-                        nevh__loop_parts(l));
+    if (!status) {
+        at.parts = nevh__loop_parts(l);
+        status = put(l, &l->rough[l->taken_times], at);
+    }
+    if (status)
+        free(at.states);
+    return status;
 }
 
 /* Cuts the panel that is rough first, while there may be more. */
@@ -261,10 +275,11 @@ static int loop_cut(nevh_loop *l, nevh__queue *from, size_t waiting) {
     int status = NEVH_OK;
     if (panels >= most || at.to - at.from < shortest)
         return loop_take(l, at, true);
+    free(at.states);
     for (size_t i = 0; !status && i < parts; i++) {
         double begins = at.from + (double)i * length;
         double ends = i + 1 < parts ? begins + length : at.to;
-        status = loop_take(l, (nevh__panel){begins, ends, 0, NULL}, false);
+        status = loop_take(l, (nevh__panel){begins, ends, 0, NULL, 0}, false);
     }
     return status;
 }
@@ -292,14 +307,16 @@ static int loop_begin(nevh_loop *l) {
     for (size_t c = 0; !status && c < l->options.n_corners; c++)
         for (int i = 0; !status && i < PIECES; i++) {
             double from = l->corners[c], length = l->corners[c + 1] - from;
-            status = put(l, &all, from + length * i / PIECES,
-                         from + length * (i + 1) / PIECES, 0);
+            status = put(l, &all,
+                         (nevh__panel){from + length * i / PIECES,
+                                       from + length * (i + 1) / PIECES, 0,
+                                       NULL, 0});
         }
     if (!status)
         status = find_units(l, &all);
-    for (size_t i = 0; !status && i < all.count; i++)
-        status = loop_take(l, all.item[i], false);
-    free(all.item);
+    while (!status && all.front < all.count)
+        status = loop_take(l, all.item[all.front++], false);
+    queue_clear(&all);
     return status;
 }
 

@@ -123,7 +123,7 @@ static int carry_panels(inside *x) {
             double end = (double)(i + 1) / (double)pieces;
             double begin = (double)i / (double)pieces;
             nevh__panel at = {from + length * begin, from + length * end, 0,
-                              NULL};
+                              NULL, 0};
             status = carry_panel(x, &at);
         }
     return status;

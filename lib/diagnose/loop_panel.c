@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/loop_private.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { TAIL = 3 }; /* coefficients whose size tells the error */
@@ -119,21 +120,44 @@ static void end_at(nevh_loop *l, size_t time, int status) {
                nevh_stepper_message(l->stepper));
 }
 
+static int loop_panel_begin(nevh_loop *l, nevh__panel *at) {
+    size_t size = l->n * NEVH__NODES;
+    if (l->keeps && !at->states)
+        at->states = nevh__array(2 * size * l->options.times, sizeof(double));
+    if (l->keeps && !at->states)
+        return nevh__no_memory(&l->report);
+    at->kept = 0;
+    nevh_stepper_reset(l->stepper);
+    return nevh__loop_place(l, at);
+}
+
+/* Stores the states of the nodes, or restores them. */
+static void loop_panel_copy(nevh_loop *l, nevh__panel *at, size_t time,
+                            bool stored) {
+    size_t size = l->n * NEVH__NODES;
+    double *q = at->states + 2 * size * time, *p = q + size;
+    memcpy(stored ? l->q : q, stored ? q : l->q, size * sizeof(double));
+    memcpy(stored ? l->p : p, stored ? p : l->p, size * sizeof(double));
+}
+
 /* Calls `look` after each of the times, as long as it says so.  Returns a status
    that ends all. */
-int nevh__loop_follow(nevh_loop *l, nevh__panel *at,
-                      bool (*look)(nevh_loop *, nevh__panel *, size_t time)) {
-    int status = nevh__loop_place(l, at);
+int nevh__loop_follow(nevh_loop *l, nevh__panel *at, nevh__loop_look look) {
+    bool stored = at->kept >= l->reach;
+    int status = stored ? NEVH_OK : loop_panel_begin(l, at);
     if (status)
         return status;
-    nevh_stepper_reset(l->stepper);
     for (size_t i = 0; i < l->reach; i++) {
-        status = loop_panel_advance(l, i);
+        status = stored ? NEVH_OK : loop_panel_advance(l, i);
         if (status) {
             end_at(l, i, status);
             break;
         }
-        if (!look(l, at, i))
+        if (at->states) {
+            loop_panel_copy(l, at, i, stored);
+            at->kept = stored ? at->kept : i + 1;
+        }
+        if (!look(l, i))
             break;
     }
     return NEVH_OK;
@@ -145,8 +169,7 @@ static void loop_panel_widen(double *low, double *high, double x) {
 }
 
 /* Measures the extent of the curve. */
-bool nevh__loop_measure(nevh_loop *l, nevh__panel *at, size_t time) {
-    (void)at;
+bool nevh__loop_measure(nevh_loop *l, size_t time) {
     for (size_t k = 0; k < l->n; k++)
         for (size_t j = 0; j < NEVH__NODES; j++) {
             size_t i = (time * l->n + k) * 2;
@@ -160,14 +183,8 @@ bool nevh__loop_measure(nevh_loop *l, nevh__panel *at, size_t time) {
     return true;
 }
 
-bool nevh__loop_keep(nevh_loop *l, nevh__panel *at, size_t time) {
-    size_t size = l->n * NEVH__NODES;
+bool nevh__loop_integrate(nevh_loop *l, size_t time) {
     loop_panel_integrate(l, time);
-    if (l->options.shapes) {
-        memcpy(at->states + 2 * size * time, l->q, size * sizeof(double));
-        memcpy(at->states + 2 * size * time + size, l->p,
-               size * sizeof(double));
-    }
     return true;
 }
 
@@ -177,8 +194,8 @@ static bool is_smooth(const nevh_loop *l, size_t time) {
 }
 
 /* Up to the first time at which it must be cut. */
-bool nevh__loop_keep_smooth(nevh_loop *l, nevh__panel *at, size_t time) {
-    nevh__loop_keep(l, at, time);
+bool nevh__loop_integrate_smooth(nevh_loop *l, size_t time) {
+    loop_panel_integrate(l, time);
     l->taken_times += is_smooth(l, time);
     return is_smooth(l, time);
 }

@@ -11,9 +11,9 @@ enum { NEVH__NODES = 16 };
 typedef struct {
     double from, to; /* s */
     size_t parts;    /* that it is cut into */
-    double
-        *states; /* NEVH__NODES x n of q, then of p, for each time; NULL where
-                        shapes are not kept */
+    double *states;  /* NEVH__NODES x n of q, then of p, for each time; NULL:
+                        they are not kept */
+    size_t kept;     /* times of which they are */
 } nevh__panel;
 
 /* Panels, of which those before `front` are gone. */
@@ -45,24 +45,25 @@ struct nevh_loop {
     size_t panels;      /* that were accepted */
     size_t reach;       /* times before any step failed */
     size_t taken_times; /* of the panel at hand, that are smooth */
+    bool keeps;         /* states of panels that wait */
     bool carried;
 };
 
 /* loop_panel.c.  Carries a panel along and calls `look` after each of the times,
-   as long as it says so.
+   as long as it says so.  No step is taken where the states of all times are kept.
    returns  NEVH_OK, also where a step failed; a status that ends all */
-typedef bool (*nevh__loop_look)(nevh_loop *, nevh__panel *, size_t time);
+typedef bool (*nevh__loop_look)(nevh_loop *, size_t time);
 int nevh__loop_follow(nevh_loop *, nevh__panel *, nevh__loop_look);
 /* States of the panel's nodes at the beginning. */
 int nevh__loop_place(nevh_loop *, const nevh__panel *);
 /* Expands values over a panel, less `from`, in a series. */
 void nevh__loop_expand(const nevh_loop *, const double value[], double from,
                        double coefficient[]);
-/* Functions for nevh__loop_follow: the extent of the curve; areas, errors and
-   states; the same up to the first time at which the panel must be cut. */
-bool nevh__loop_measure(nevh_loop *, nevh__panel *, size_t time);
-bool nevh__loop_keep(nevh_loop *, nevh__panel *, size_t time);
-bool nevh__loop_keep_smooth(nevh_loop *, nevh__panel *, size_t time);
+/* Functions for nevh__loop_follow: the extent of the curve; areas and errors; the
+   same up to the first time at which the panel must be cut. */
+bool nevh__loop_measure(nevh_loop *, size_t time);
+bool nevh__loop_integrate(nevh_loop *, size_t time);
+bool nevh__loop_integrate_smooth(nevh_loop *, size_t time);
 /* Into how many parts the panel at hand is to be cut, which is not smooth. */
 size_t nevh__loop_parts(const nevh_loop *);
 
