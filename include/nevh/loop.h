@@ -43,7 +43,8 @@ typedef struct {
                               asked for; borrowed likewise */
     size_t times;          /* of them */
     double t0, h;          /* as of nevh_run */
-    size_t most_points;    /* 0: 16384 */
+    size_t most_points;    /* 0: 16384; fewer are carried along once it is clear
+                              that these do not give an area to 1e-3 */
     bool shapes;           /* nevh_loop_shape is to be asked */
 } nevh_loop_options;
 
@@ -66,8 +67,8 @@ NEVH_API const char *nevh_loop_message(const nevh_loop *);
    returns  NEVH_OK; where a point's step fails its status: areas before it are
             there; NEVH_EINVAL where the curve encloses no area; NEVH_EFAILED
             where `curve` said so; NEVH_ENOMEM
-   cost     as many orbits as points of the result, and up to three times that
-            for panels that were cut */
+   cost     as many orbits as points of the result, and about half of that for
+            panels that were cut; states of panels take up to 64 MB */
 NEVH_API int nevh_loop_carry(nevh_loop *);
 
 typedef struct {

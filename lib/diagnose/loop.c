@@ -259,6 +259,7 @@ static int loop_take(nevh_loop *l, nevh__panel at, bool last) {
         return loop_accept(l, at);
     if (!status) {
         at.parts = nevh__loop_parts(l);
+        at.least = nevh__loop_least_parts(l);
         status = put(l, &l->rough[l->taken_times], at);
     }
     if (status)
@@ -266,10 +267,20 @@ static int loop_take(nevh_loop *l, nevh__panel at, bool last) {
     return status;
 }
 
+/* True if the most points do not give the area at a time: no more than these need be
+   carried along for it. */
+static bool is_out_of_reach(const nevh_loop *l, const nevh__queue *rough,
+                            size_t waiting) {
+    size_t least = l->panels + waiting;
+    for (size_t i = rough->front; i < rough->count; i++)
+        least += rough->item[i].least - 1;
+    return least > most_panels(l);
+}
+
 /* Cuts the panel that is rough first, while there may be more. */
 static int loop_cut(nevh_loop *l, nevh__queue *from, size_t waiting) {
     nevh__panel at = from->item[from->front++];
-    size_t most = most_panels(l), panels = l->panels + waiting;
+    size_t most = l->full ? 0 : most_panels(l), panels = l->panels + waiting;
     size_t parts = panels + at.parts <= most ? at.parts : 2;
     double length = (at.to - at.from) / (double)parts;
     int status = NEVH_OK;
@@ -279,7 +290,7 @@ static int loop_cut(nevh_loop *l, nevh__queue *from, size_t waiting) {
     for (size_t i = 0; !status && i < parts; i++) {
         double begins = at.from + (double)i * length;
         double ends = i + 1 < parts ? begins + length : at.to;
-        status = loop_take(l, (nevh__panel){begins, ends, 0, NULL, 0}, false);
+        status = loop_take(l, (nevh__panel){.from = begins, .to = ends}, false);
     }
     return status;
 }
@@ -296,6 +307,7 @@ static int cut_all(nevh_loop *l) {
         }
         if (!first)
             break;
+        l->full = l->full || is_out_of_reach(l, first, waiting);
         status = loop_cut(l, first, waiting);
     }
     return status;
@@ -308,9 +320,8 @@ static int loop_begin(nevh_loop *l) {
         for (int i = 0; !status && i < PIECES; i++) {
             double from = l->corners[c], length = l->corners[c + 1] - from;
             status = put(l, &all,
-                         (nevh__panel){from + length * i / PIECES,
-                                       from + length * (i + 1) / PIECES, 0,
-                                       NULL, 0});
+                         (nevh__panel){.from = from + length * i / PIECES,
+                                       .to = from + length * (i + 1) / PIECES});
         }
     if (!status)
         status = find_units(l, &all);

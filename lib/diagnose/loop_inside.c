@@ -122,14 +122,14 @@ static int carry_panels(inside *x) {
             double from = l->corners[c], length = l->corners[c + 1] - from;
             double end = (double)(i + 1) / (double)pieces;
             double begin = (double)i / (double)pieces;
-            nevh__panel at = {from + length * begin, from + length * end, 0,
-                              NULL, 0};
+            nevh__panel at = {.from = from + length * begin,
+                              .to = from + length * end};
             status = carry_panel(x, &at);
         }
     return status;
 }
 
-/* Replaces areas that are not certain to 1e-3 by those of the inside that are more
+/* Replaces areas that are not certain to NEVH__LOOP_CERTAIN by those of the inside that are more
    certain. */
 static void take_over(inside *x) {
     nevh_loop *l = x->loop;
@@ -147,11 +147,11 @@ static void take_over(inside *x) {
 
 /* States are lost where a step fails, or time is out. */
 int nevh__loop_look_inside(nevh_loop *l) {
-    static const double certain = 1e-3;
     inside x = {.loop = l};
     bool asked = false;
     for (size_t i = 0; i < l->reach; i++)
-        asked = asked || !(l->error[i] <= certain * fabs(l->area[i]));
+        asked =
+            asked || !(l->error[i] <= NEVH__LOOP_CERTAIN * fabs(l->area[i]));
     if (!asked || l->n != 1)
         return NEVH_OK;
     x.sum[0] = nevh__array(2 * l->options.times, sizeof *x.sum[0]);

@@ -202,12 +202,22 @@ bool nevh__loop_integrate_smooth(nevh_loop *l, size_t time) {
 
 /* Halves have errors that are 2^-14 of those of the whole at best: where that is too
    much they need not be tried. */
-size_t nevh__loop_parts(const nevh_loop *l) {
+static size_t parts_for(const nevh_loop *l, double certain, size_t parts) {
     enum { MOST = 16 };
     static const double halved = 0x1p-14;
-    size_t time = l->taken_times, parts = 2;
-    double error = l->taken_error[time] * halved;
-    for (; parts < MOST && error > tolerance * l->unit[time]; error *= halved)
+    double error = l->taken_error[l->taken_times];
+    double most = certain * l->unit[l->taken_times];
+    for (size_t done = 1; done < parts; done *= 2)
+        error *= halved;
+    for (; parts < MOST && error > most; error *= halved)
         parts *= 2;
     return parts;
+}
+
+size_t nevh__loop_parts(const nevh_loop *l) {
+    return parts_for(l, tolerance, 2);
+}
+
+size_t nevh__loop_least_parts(const nevh_loop *l) {
+    return parts_for(l, NEVH__LOOP_CERTAIN, 1);
 }

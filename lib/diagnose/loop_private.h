@@ -7,10 +7,13 @@
 #include <nevh/loop.h>
 
 enum { NEVH__NODES = 16 };
+/* The relative error of an area from which on it is looked for inside. */
+#define NEVH__LOOP_CERTAIN 1e-3
 
 typedef struct {
     double from, to; /* s */
     size_t parts;    /* that it is cut into */
+    size_t least;    /* that an area certain to 1e-3 takes */
     double *states;  /* NEVH__NODES x n of q, then of p, for each time; NULL:
                         they are not kept */
     size_t kept;     /* times of which they are */
@@ -46,6 +49,7 @@ struct nevh_loop {
     size_t reach;       /* times before any step failed */
     size_t taken_times; /* of the panel at hand, that are smooth */
     bool keeps;         /* states of panels that wait */
+    bool full;          /* no panel is cut any more */
     bool carried;
 };
 
@@ -66,6 +70,8 @@ bool nevh__loop_integrate(nevh_loop *, size_t time);
 bool nevh__loop_integrate_smooth(nevh_loop *, size_t time);
 /* Into how many parts the panel at hand is to be cut, which is not smooth. */
 size_t nevh__loop_parts(const nevh_loop *);
+/* The fewest parts of it that can give the area to NEVH__LOOP_CERTAIN. */
+size_t nevh__loop_least_parts(const nevh_loop *);
 
 /* loop_inside.c.  Finds areas that the curve no longer tells, of one degree of
    freedom: the mean over what it enclosed at first of the determinants of all

@@ -131,22 +131,28 @@ TEST(verlet_keeps_the_area_for_1000_steps) {
     nevh_scene_free(s);
 }
 
+typedef struct {
+    size_t orbits;
+    double *rest; /* of circle */
+} counter;
+
 static int counted_circle(void *data, size_t count, const double s[],
                           double q[], double p[]) {
-    *(size_t *)data += count;
-    return circle(NULL, count, s, q, p);
+    counter *c = data;
+    c->orbits += count;
+    return circle(c->rest, count, s, q, p);
 }
 
 /* Panels that are too rough for halves are not cut into halves. */
 TEST(few_orbits_are_carried_for_nothing) {
-    size_t orbits = 0;
+    counter c = {0, NULL};
     nevh_scene *s = pendulum();
-    nevh_loop *l = carried(
-        s, nevh_verlet,
-        (nevh_loop_options){.curve = counted_circle, .data = &orbits}, 4000);
+    nevh_loop *l =
+        carried(s, nevh_verlet,
+                (nevh_loop_options){.curve = counted_circle, .data = &c}, 4000);
     size_t points = nevh_loop_result(l, 1).points;
     ck_assert_double_eq_tol(ratio(l), 1, 1e-9);
-    ck_assert_uint_le(2 * orbits, 3 * points);
+    ck_assert_uint_le(2 * c.orbits, 3 * points);
     nevh_loop_free(l);
     nevh_scene_free(s);
 }
@@ -243,6 +249,28 @@ TEST(what_is_not_resolved_is_told) {
     ck_assert_double_gt(last.error,
                         fabs(last.area - nevh_loop_result(l, 0).area));
     nevh_loop_free(l);
+    nevh_scene_free(s);
+}
+
+/* Where even the most points do not give an area, no more are carried along than show
+   that, and few of them for nothing. */
+TEST(areas_out_of_reach_take_few_orbits) {
+    enum { MOST = 2048 };
+    static const size_t steps[] = {4000, 400};
+    double rest[] = {0.1, 0.35};
+    nevh_scene *s = galaxy();
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
+        counter c = {0, rest};
+        nevh_loop_options is = {
+            .curve = counted_circle, .data = &c, .most_points = MOST};
+        nevh_loop *l = carried(s, nevh_verlet, is, steps[i]);
+        nevh_loop_area last = nevh_loop_result(l, 1);
+        bool resolved = last.error <= 1e-9 * last.area;
+        ck_assert_int_eq(resolved, steps[i] == 400);
+        ck_assert_uint_lt(last.points, MOST);
+        ck_assert_uint_le(2 * c.orbits, 3 * last.points);
+        nevh_loop_free(l);
+    }
     nevh_scene_free(s);
 }
 
