@@ -90,17 +90,6 @@ static nevh_loop *new_loop(flow_job *j, const flow_row *r, int eye,
     return tool_owned(nevh_loop_new(p->system, scheme, &o, &is));
 }
 
-/* As many as have a shape that is filled. */
-static size_t resolved_times(const flow_job *j, const flow_row *r) {
-    size_t times = 0;
-    for (size_t i = 0; i < j->times; i++) {
-        nevh_loop_area at = nevh_loop_result(r->loop, i);
-        if (flow_resolved(at) && !at.inside)
-            times = i + 1;
-    }
-    return times;
-}
-
 /* returns  TOOL_OK, TOOL_FAILED where a step failed, or TOOL_USAGE */
 static int run_row(flow_job *j, flow_row *r, const options *o) {
     bool shapes = plot_wanted(o);
@@ -114,9 +103,9 @@ static int run_row(flow_job *j, flow_row *r, const options *o) {
         return TOOL_USAGE;
     if (status == NEVH_EINVAL)
         return tool_refuse("--shape: %s", nevh_loop_message(r->loop));
-    size_t times = resolved_times(j, r);
-    bool eyes = shapes && times && j->shape.kind == FLOW_CAT;
-    for (int i = 0; eyes && i < FLOW_EYES; i++) {
+    bool eyes = shapes && j->shape.kind == FLOW_CAT;
+    size_t times = eyes ? flow_drawn_times(j, r) : 0;
+    for (int i = 0; eyes && times && i < FLOW_EYES; i++) {
         r->eye[i] = new_loop(j, r, i + 1, times, true);
         nevh_loop_carry(r->eye[i]);
         j->shape.eye = 0;

@@ -26,6 +26,8 @@ typedef struct {
 
 /* True if the panels give the area to 1e-6 of it. */
 bool flow_resolved(nevh_loop_area);
+/* flow_plot.c: the times up to the last at which the shape of a row is drawn. */
+size_t flow_drawn_times(const flow_job *, const flow_row *);
 /* flow_plot.c: the shapes at all times, a row of panels an integrator.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int flow_plot(const flow_job *, const options *);

@@ -251,6 +251,15 @@ static size_t every_of(const flow_job *j) {
     return (j->times + MOST_SHAPES - 1) / MOST_SHAPES;
 }
 
+size_t flow_drawn_times(const flow_job *j, const flow_row *r) {
+    size_t every = every_of(j), drawn = 0;
+    for (size_t i = 0; i < j->times; i += every)
+        if (flow_resolved(nevh_loop_result(r->loop, i)) &&
+            measured(j, r->loop, i).drawn)
+            drawn = i + 1;
+    return drawn;
+}
+
 /* The time of the last shape of a panel. */
 static double last_drawn(const picture *f, const flow_row *r) {
     size_t every = every_of(f->job), last = 0;
