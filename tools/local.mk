@@ -74,6 +74,7 @@ tools_nevh_SOURCES = \
 	tools/experiment/stability.c \
 	tools/search/suggested_step.c \
 	tools/experiment/trial_run.c \
+	tools/experiment/trial_run_words.c \
 	tools/hard/hard_cases.h \
 	tools/hard/hard_cases.c \
 	tools/hard/hard.c \
@@ -159,6 +160,9 @@ tools_nevh_SOURCES = \
 	tools/orbit/portrait.c \
 	tools/orbit/portrait_equilibria.c \
 	tools/orbit/portrait_levels.c \
+	tools/orbit/warnings.h \
+	tools/orbit/passage_warnings.c \
+	tools/orbit/saddle_warnings.c \
 	tools/orbit/frequencies_command.c \
 	tools/orbit/frequencies_private.h \
 	tools/orbit/frequencies_words.c \

@@ -8,12 +8,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SAMPLES = 256, PARTS = 16, EDGE_EVERY = 8, MOST_DOF = 48 };
+enum {
+    SAMPLES = 256,
+    PARTS = 16,
+    EDGE_EVERY = 8,
+    PLACE_EVERY = 32,
+    MOST_DOF = 48
+};
 /* Evaluations of single terms, or of their derivatives, in all: a second or
    two, and as many on every machine. */
 static const double enough = 1e8;
 static const double large = 1e4; /* instances of terms */
 static const double tolerance = 1e-10;
+
+/* The sample of most gradients, from the state and time before it. */
+typedef struct {
+    double *z; /* 2n */
+    double t, h;
+    uint64_t gradients;
+} busiest;
 
 typedef struct {
     const plan *plan;
@@ -28,8 +41,10 @@ typedef struct {
     double *length;              /* 2n */
     double *z, *before;          /* 2n */
     double *trial;               /* 2n */
+    double *fast;                /* 2n: the state of fastest.rate */
     nevh_stepper *stepper;
-    bool ends;               /* the orbit, or what may be spent, at a time */
+    bool ends; /* the orbit, or what may be spent, at a time */
+    busiest busiest;
     double looks, instances; /* instances: of terms, in H */
     double slope;            /* evaluations that a gradient of H costs */
 } trial;
@@ -141,8 +156,11 @@ static void look_for_errors(trial *f, double t) {
 static void look(trial *f, int i, double t) {
     size_t n = f->plan->n;
     f->looks++;
-    memcpy(f->trial, f->z, 2 * f->plan->n * sizeof *f->z);
+    memcpy(f->trial, f->z, 2 * n * sizeof *f->z);
+    double rate = f->fastest.rate;
     largest_rates_observe(&f->fastest, 0, t, f->trial, f->trial + n);
+    if (f->fastest.rate > rate)
+        memcpy(f->fast, f->z, 2 * n * sizeof *f->z);
     look_for_noise(f, t);
     look_for_errors(f, t);
     if (i % EDGE_EVERY == 0 && n <= MOST_DOF)
@@ -175,11 +193,21 @@ static double look_up_to_stop(trial *f, double t, double h) {
     return t + h;
 }
 
+static void keep_busiest(trial *f, double t, double h, uint64_t gradients) {
+    if (gradients <= f->busiest.gradients)
+        return;
+    memcpy(f->busiest.z, f->before, 2 * f->plan->n * sizeof *f->z);
+    f->busiest.t = t;
+    f->busiest.h = h;
+    f->busiest.gradients = gradients;
+}
+
 /* Steps of sample i, to the time *t; a sample alone may use the whole budget for a
    large H, of which one step is taken in any case. */
 static int take_sample(trial *f, int i, double h, double *t) {
     const plan *p = f->plan;
     int parts = f->instances > large ? PARTS : 1, status = NEVH_OK;
+    uint64_t gradients = nevh_stepper_counts(f->stepper).gradients;
     memcpy(f->before, f->z, 2 * p->n * sizeof *f->z);
     for (int k = 0; !status && k < parts; k++) {
         if (k > 0 && work_of(f) >= enough)
@@ -189,7 +217,42 @@ static int take_sample(trial *f, int i, double h, double *t) {
         if (!status)
             *t = p->run->t_start + (i - 1 + (k + 1.) / parts) * h;
     }
+    gradients = nevh_stepper_counts(f->stepper).gradients - gradients;
+    if (!status)
+        keep_busiest(f, p->run->t_start + (i - 1) * h, h, gradients);
     return status;
+}
+
+/* The busiest part of the busiest sample, again and again: what is fast there may lie
+   between samples, as where bodies pass each other closely. */
+static void look_closer(trial *f) {
+    enum { TIMES = 3, FINER = 32 };
+    size_t n = f->plan->n;
+    for (int i = 0; i < TIMES && f->busiest.gradients > 0; i++) {
+        double begin = f->busiest.t, h = f->busiest.h / FINER;
+        memcpy(f->z, f->busiest.z, 2 * n * sizeof *f->z);
+        f->busiest.gradients = 0;
+        for (int k = 0; k < FINER && work_of(f) < enough; k++) {
+            double t = begin + k * h;
+            uint64_t before = nevh_stepper_counts(f->stepper).gradients;
+            memcpy(f->before, f->z, 2 * n * sizeof *f->z);
+            if (nevh_stepper_apply(f->stepper, t, h, f->z, f->z + n))
+                return;
+            keep_busiest(f, t, h,
+                         nevh_stepper_counts(f->stepper).gradients - before);
+            look(f, 1, t + h);
+        }
+    }
+}
+
+static void keep_place(trial *f, double t, const double z[]) {
+    trial_run *found = f->found;
+    size_t width = 2 * f->plan->n;
+    found->place =
+        tool_grown(found->place, found->places, sizeof *found->place);
+    double *copy = tool_allocate(width, sizeof *copy);
+    memcpy(copy, z, width * sizeof *copy);
+    found->place[found->places++] = (trial_place){t, copy};
 }
 
 /* Steps may pass the end of the solution, where its rates are none. */
@@ -200,6 +263,7 @@ static void run(trial *f) {
     int status = nevh_stepper_status(f->stepper);
     bool over = false;
     look(f, 0, t);
+    keep_place(f, t, f->z);
     for (int i = 1; !status && i <= SAMPLES; i++) {
         over = isfinite(ends) && i == SAMPLES;
         if (over || (i > 1 && work_of(f) >= enough))
@@ -213,9 +277,15 @@ static void run(trial *f) {
             break;
         }
         look(f, i, t);
+        if (i % PLACE_EVERY == 0 && i < SAMPLES)
+            keep_place(f, t, f->z);
     }
     f->found->length = t - begin;
     f->ends = f->ends || status || !(f->found->length >= p->t_end - begin);
+    if (!status && !over)
+        look_closer(f);
+    if (f->fastest.rate > 0)
+        keep_place(f, f->fastest.rate_at, f->fast);
     if (status || over)
         f->found->failure =
             why_until(p, ends, nevh_stepper_message(f->stepper));
@@ -288,6 +358,8 @@ trial_run trial_run_new(const plan *p, bool chaos) {
     f.z = tool_allocate(2 * p->n, sizeof *f.z);
     f.before = tool_allocate(2 * p->n, sizeof *f.z);
     f.trial = tool_allocate(2 * p->n, sizeof *f.trial);
+    f.fast = tool_allocate(2 * p->n, sizeof *f.fast);
+    f.busiest.z = tool_allocate(2 * p->n, sizeof *f.z);
     o.gradient_step = 0;
     f.field = plan_values(p);
     f.gradient = nevh_field_new(p->system, &given);
@@ -316,154 +388,4 @@ trial_run trial_run_new(const plan *p, bool chaos) {
     nevh_field_free(f.gradient);
     nevh_field_free(f.exact);
     return found;
-}
-
-static void edge_notes(const plan *p, const trial_run *f, list *notes) {
-    size_t k = f->edge_variable;
-    if (isfinite(f->edge))
-        list_print(notes,
-                   "The domain of H ends at %s%s = %.6g: its distance "
-                   "from the orbit is %.2g of the length over which H varies, "
-                   "near t = %.4g",
-                   k < p->n ? "" : "p_",
-                   nevh_scene_coordinate(p->scene, k % p->n), f->edge_at,
-                   f->edge, f->edge_time);
-    if (f->failure)
-        list_print(notes, "The orbit was integrated up to t = %.6g: %s",
-                   p->run->t_start + f->length, f->failure);
-}
-
-/* When rounding errors of a chaotic orbit are as large as it is. */
-static void horizon_notes(const plan *p, const trial_run *f, list *notes) {
-    double start = p->run->t_start, grown = -log(DBL_EPSILON);
-    double exponent = f->chaos.exponent, error = f->chaos.error;
-    double horizon = start + grown / exponent;
-    char *range = text_print("%.3g to %.3g", start + grown / (exponent + error),
-                             start + grown / (exponent - error));
-    list_print(notes,
-               "Chaotic: Lyapunov exponent %.2g +- %.1g%s (over %.3g%s)."
-               "  Predictability horizon: %sabout t = %.3g%s (%s, as the "
-               "exponent is uncertain): rounding errors have then grown to the "
-               "size of the orbit.  Positions after it cannot be predicted; "
-               "energies and averages can.",
-               exponent, error, p->per_unit, f->chaos.report.t - start, p->unit,
-               horizon < p->t_end ? "" : "beyond the run, ", horizon, p->unit,
-               range);
-}
-
-/* Notes the time followed, and its meaning for a longer run. */
-static void outlook_notes(const plan *p, const trial_run *f, list *notes) {
-    double time = f->chaos.report.t - p->run->t_start;
-    if (f->plane) {
-        list_add(notes, "Regular: one degree of freedom without a drive cannot "
-                        "be chaotic.");
-        return;
-    }
-    switch (f->chaos.report.verdict) {
-    case NEVH_CHAOTIC:
-        horizon_notes(p, f, notes);
-        break;
-    case NEVH_UNSTABLE_ORBIT:
-        list_print(notes,
-                   "Unstable, not chaotic: Lyapunov exponent about %.2g%s over "
-                   "%.3g%s; nearby orbits separate as near an unstable "
-                   "equilibrium or periodic orbit, or in an escape.",
-                   f->chaos.exponent, p->per_unit, time, p->unit);
-        break;
-    case NEVH_UNRESOLVED:
-        list_print(notes, "Chaotic or regular: %s", plan_kinks_text);
-        break;
-    case NEVH_REGULAR:
-        list_print(notes,
-                   "Regular: over %.3g%s the distance of neighbouring orbits "
-                   "does not grow exponentially (Lyapunov exponent below "
-                   "%.2g%s).",
-                   time, p->unit, f->chaos.error + fabs(f->chaos.exponent),
-                   p->per_unit);
-        break;
-    default:
-        if (f->length > 0)
-            list_print(notes,
-                       "Chaotic or regular: %.3g%s are too short to decide; "
-                       "%s.",
-                       f->length, p->unit,
-                       f->failure ? "the orbit is followed no further"
-                                  : "--t-end makes the run longer");
-        else
-            list_print(notes,
-                       "Chaotic or regular: unknown, since the run ends at "
-                       "its start%s%s.",
-                       f->failure ? ": " : "", f->failure ? f->failure : "");
-    }
-}
-
-/* Notes changes of H with time that are faster than a step. */
-static void change_notes(const plan *p, list *notes) {
-    const char *effect = "";
-    double at, time = nevh_timing_shortest(p->timing, &at, &effect);
-    if (time < p->dt[0])
-        list_print(notes,
-                   "%s changes within %.2g%s near t = %.6g%s: steps of dt "
-                   "= %.4g%s pass over it",
-                   effect, time, p->unit, at, p->unit, p->dt[0], p->unit);
-    time_notes(p, notes);
-}
-
-/* The rounding of differences that are far off means nothing. */
-static void gradient_notes(const plan *p, const trial_run *f, list *notes) {
-    static const double much = 1e-6, far_off = 1e-2;
-    const char *name = p->gradients.item[0];
-    if (isfinite(f->noise) && !(f->wrong > far_off))
-        list_print(notes,
-                   f->noise > 0
-                       ? "Gradient: the rounding of %s causes an energy error "
-                         "of %.1e over the run%s"
-                       : "Gradient: %s adds no rounding error of its own",
-                   name, f->noise,
-                   f->rough ? "; its differences err more where they reach "
-                              "across a place where H is not smooth"
-                            : "");
-    if (f->wrong > much && !f->rough)
-        list_print(notes,
-                   "Gradient: %s errs by %.1e of the largest derivative (t = "
-                   "%.4g%s): %s; --gradient exact does not err.",
-                   name, f->wrong, f->wrong_at, p->unit,
-                   f->rounded ? "its steps are so short that the rounding of H "
-                                "counts"
-                              : "H varies there over shorter lengths than its "
-                                "differences are made for");
-}
-
-void trial_run_words(const plan *p, const trial_run *f, list *notes) {
-    const char *rad = *p->unit ? " rad" : "";
-    if (f->drive > f->frequency)
-        list_print(notes,
-                   "Highest frequency: omega = %.3g%s%s, of %s with time; "
-                   "omega dt = %.3g at dt = %.4g%s",
-                   f->drive, rad, p->per_unit, f->driver, p->dt[0] * f->drive,
-                   p->dt[0], p->unit);
-    if (f->frequency > 0)
-        list_print(notes,
-                   "%s: omega = %.3g%s%s (t = %.4g%s); "
-                   "omega dt = %.3g at dt = %.4g%s",
-                   f->drive > f->frequency ? "Highest frequency of the motion"
-                                           : "Highest frequency",
-                   f->frequency, rad, p->per_unit, f->frequency_at, p->unit,
-                   p->dt[0] * f->frequency, p->dt[0], p->unit);
-    change_notes(p, notes);
-    if (f->rate > f->frequency)
-        list_print(notes,
-                   "Fastest growth: small displacements grow at a rate of "
-                   "%.3g%s (t = %.4g%s); rate dt = %.3g at dt = %.4g%s",
-                   f->rate, p->per_unit, f->rate_at, p->unit,
-                   p->dt[0] * f->rate, p->dt[0], p->unit);
-    outlook_notes(p, f, notes);
-    gradient_notes(p, f, notes);
-    edge_notes(p, f, notes);
-}
-
-const char *trial_run_verdict(const trial_run *f, double limit, double dt) {
-    if (f->frequency * dt > limit)
-        return "unstable";
-    return fmax(f->rate, f->drive) * dt > 1 ? "not resolved" : NULL;
 }

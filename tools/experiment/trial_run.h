@@ -50,6 +50,12 @@ smoothness smoothness_on_way(const plan *, char **why);
 /* A note where it is not smooth. */
 void smoothness_notes(const plan *, list *notes);
 
+/* A state on the orbit, 2n. */
+typedef struct {
+    double t;
+    const double *z;
+} trial_place;
+
 /* trial_run.c: what a short trial run says of a run. */
 typedef struct {
     double frequency, frequency_at; /* 0: none is known */
@@ -63,7 +69,9 @@ typedef struct {
     double wrong, wrong_at;   /* largest error of the gradient, relative to the
                                  largest derivative; when */
     bool rounded;             /* as rounding of H explains */
-    bool rough;  /* H is not smooth on its way; false until somebody looks */
+    bool rough; /* H is not smooth on its way; false until somebody looks */
+    trial_place *place; /* some, and that of `rate` last */
+    size_t places;
     double edge; /* of H: distance in lengths; INFINITY: none is near */
     size_t edge_variable; /* coordinates first */
     double edge_at, edge_time;
@@ -72,6 +80,7 @@ typedef struct {
 /* chaos    whether the indicators are asked for
    cost     1e8 evaluations of terms, and two times nevh_chaos_find */
 trial_run trial_run_new(const plan *, bool chaos);
+/* trial_run_words.c */
 void trial_run_words(const plan *, const trial_run *, list *notes);
 /* The verdict for a scheme with that limit of stability at steps of dt; NULL: none. */
 const char *trial_run_verdict(const trial_run *, double limit, double dt);
