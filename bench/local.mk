@@ -113,6 +113,11 @@ bench-certain: all
 	NEVH_SCENES=$(srcdir)/scenes python3 -B $(srcdir)/bench/certain.py \
 	  ./tools/nevh$(EXEEXT)
 
+# Whether nevh check warns of runs that go wrong, and of no others: half an hour.
+bench-warnings: all
+	NEVH_SCENES=$(srcdir)/scenes $(SHELL) $(srcdir)/bench/warnings.sh \
+	  ./tools/nevh$(EXEEXT) $(srcdir)
+
 # Members that differ in a constant of H, against those that start elsewhere.
 bench-lanes: all
 	NEVH_SCENES=$(srcdir)/scenes $(SHELL) $(srcdir)/bench/lanes.sh \
@@ -123,9 +128,9 @@ bench-hashes: all
 	NEVH_SCENES=$(srcdir)/scenes $(SHELL) $(srcdir)/bench/hashes.sh \
 	  ./tools/nevh$(EXEEXT)
 
-EXTRA_DIST += bench/hashes.sh bench/ensembles.py bench/promises.py bench/certain.py bench/lanes.sh bench/parts.sh bench/parts bench/speedup.sh bench/recommend.sh bench/answers.sh bench/integrable.sh bench/exponents.sh bench/exponents bench/orbits bench/textbook \
+EXTRA_DIST += bench/hashes.sh bench/ensembles.py bench/promises.py bench/certain.py bench/lanes.sh bench/parts.sh bench/parts bench/speedup.sh bench/recommend.sh bench/answers.sh bench/integrable.sh bench/exponents.sh bench/exponents bench/warnings.sh bench/orbits bench/textbook \
 	bench/blind bench/kinks
 CLEANFILES += bench/results-answers.csv bench/verdicts$(EXEEXT) bench/wrong-verdicts
 DISTCLEANFILES = bench/long-runs
-.PHONY: bench bench-brouwer bench-certain bench-ensembles bench-fit bench-counts bench-hashes bench-lanes bench-peers bench-recommend bench-speedup \
+.PHONY: bench bench-brouwer bench-certain bench-ensembles bench-fit bench-counts bench-hashes bench-lanes bench-peers bench-recommend bench-warnings bench-speedup \
   bench-verdicts

@@ -266,7 +266,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_memory.sh \
 	tests/tool/nevh_files.sh \
 	tests/tool/nevh_units.sh \
-	tests/tool/nevh_integrators.sh tests/tool/nevh_check.sh \
+	tests/tool/nevh_integrators.sh tests/tool/nevh_check.sh tests/tool/nevh_warnings.sh \
 	tests/tool/nevh_integrable.sh \
 	tests/tool/nevh_time.sh \
 	tests/tool/nevh_hard.sh \

@@ -3,6 +3,7 @@
 #include "cli/commands.h"
 #include "experiment/envelope.h"
 #include "experiment/trial_run.h"
+#include "orbit/warnings.h"
 #include "plot/order_plot.h"
 #include <math.h>
 #include <string.h>
@@ -215,6 +216,9 @@ static page make_page(const options *o, const plan *p, const row_list *r) {
     observable_notes(p, &result.before);
     energies_notes(p, &result.before);
     judge(p, r, is_table, &result.after);
+    if (!isfinite(p->ends)) /* words below a table are no part of CSV */
+        warnings_words(p, NULL, r->row, r->count,
+                       is_table ? &result.after : &result.before);
     if (is_table)
         list_reasons(r, &result.after);
     return result;

@@ -236,7 +236,8 @@ static void look_closer(trial *f) {
             double t = begin + k * h;
             uint64_t before = nevh_stepper_counts(f->stepper).gradients;
             memcpy(f->before, f->z, 2 * n * sizeof *f->z);
-            if (nevh_stepper_apply(f->stepper, t, h, f->z, f->z + n))
+            if (nevh_stepper_apply(f->stepper, t, h, f->z, f->z + n) ||
+                is_stopped(f, t + h))
                 return;
             keep_busiest(f, t, h,
                          nevh_stepper_counts(f->stepper).gradients - before);

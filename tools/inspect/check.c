@@ -3,6 +3,7 @@
 #include "cli/commands.h"
 #include "experiment/conserved.h"
 #include "experiment/trial_run.h"
+#include "orbit/warnings.h"
 #include "parts_words.h"
 #include <math.h>
 #include <nevh/extend.h>
@@ -321,6 +322,8 @@ static int check_plan(const options *o, const plan *p) {
         energy_notes(p, &result.before);
         ahead.rough = probe_notes(p, &result.before) == SMOOTHNESS_NONE;
         trial_run_words(p, &ahead, &result.before);
+        row_list rows = rows_of(p);
+        warnings_words(p, &ahead, rows.row, rows.count, &result.before);
         conserved_words(p, &result.before);
         parts_words(p, &result.before);
         note_tables(p, &result.before);

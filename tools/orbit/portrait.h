@@ -32,11 +32,13 @@ typedef struct {
     size_t count;
     bool curve, many; /* degenerate ones fill it; there may be more */
 } levels;
+/* Exact, or by differences; the caller looks at its status. */
+nevh_field *levels_field(const plan *);
 int levels_new(levels *, const plan *, portrait_window);
 /* Level curves through these energies, and through the saddles; the first panel
    names what is in the legend. */
 void levels_draw(const levels *, plot *, const double energy[], size_t count);
-/* portrait_equilibria.c: all of the window, those near the start first; of
+/* portrait_equilibria.c, of plan, window and field alone: all of the window, those near the start first; of
    degenerate ones that fill a curve, one. */
 void levels_find_equilibria(levels *);
 double levels_energy(const levels *, double x, double y);

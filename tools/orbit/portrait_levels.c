@@ -21,15 +21,19 @@ static double y_at(const levels *l, size_t k) {
     return w->low_y + (w->high_y - w->low_y) * (double)k / (UP - 1);
 }
 
-int levels_new(levels *l, const plan *p, portrait_window w) {
+nevh_field *levels_field(const plan *p) {
     nevh_options o = plan_options(p, "exact");
-    *l = (levels){.plan = p, .window = w};
-    l->field = nevh_field_new(p->system, &o);
-    if (nevh_field_status(l->field)) {
-        nevh_field_free(l->field);
+    nevh_field *field = nevh_field_new(p->system, &o);
+    if (nevh_field_status(field)) {
+        nevh_field_free(field);
         o.gradient = nevh_central6;
-        l->field = nevh_field_new(p->system, &o);
+        field = nevh_field_new(p->system, &o);
     }
+    return field;
+}
+
+int levels_new(levels *l, const plan *p, portrait_window w) {
+    *l = (levels){.plan = p, .window = w, .field = levels_field(p)};
     if (nevh_field_status(l->field))
         return tool_refuse("%s: %s", p->name, nevh_field_message(l->field));
     l->h = tool_allocate(ACROSS * UP, sizeof *l->h);

@@ -1,6 +1,7 @@
 /* nevh: an orbit, and its rows.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "trajectory.h"
+#include "warnings.h"
 #include "experiment/conserved.h"
 #include <float.h>
 #include <math.h>
@@ -207,6 +208,23 @@ static void warn(trajectory *r, const char *text) {
     fprintf(stderr, "nevh: %s: warning: %s\n", r->plan->name, text);
 }
 
+/* Warns of steps that are too long, where its energy shows errors. */
+static void warn_of_steps(trajectory *r, double scale) {
+    row_list rows = rows_of(r->plan);
+    size_t i = 0;
+    while (i < rows.count && strcmp(rows.row[i].integrator, r->integrator) != 0)
+        i++;
+    if (i == rows.count || r->plan->balance)
+        return;
+    row *own = &rows.row[i];
+    own->ran = true;
+    own->energy.max = r->changed / scale;
+    own->energy.scale = scale;
+    list found = warnings_of(r->plan, NULL, own, 1);
+    for (i = 0; i < found.count; i++)
+        warn(r, found.item[i]);
+}
+
 /* Warns of [invariants] that are not conserved, and of an orbit whose energy
    changes by a good part. */
 static void doubt(trajectory *r) {
@@ -233,6 +251,8 @@ static void doubt(trajectory *r) {
                          r->changed / scale);
     if (why)
         warn(r, why);
+    else if (shorter)
+        warn_of_steps(r, scale);
 }
 
 /* When rows are due. */
