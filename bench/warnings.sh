@@ -8,7 +8,8 @@
 # orbit by Taylor series.  `passage`: the scenes of bench/textbook and bench/blind over
 # five of their periods.  A run is wrong where its energy error is above a tenth of the
 # scale, or it breaks off; and a warning is right also where the state has no digit, or
-# the run is unstable.  Thresholds were chosen by the scenes of bench/textbook and by the
+# the run is unstable.  `drive`: the same with steps that are parts of the period of a
+# drive, and longer ones.  Thresholds were chosen by the scenes of bench/textbook and by the
 # odd ones of the starts; HALF (tuned, other; both where it is left out) takes one of them.
 # Prints cases that differ; the exit status is 1 where warnings of a kind are wrong, or
 # wrong runs are among those without a warning, in more than 5 %.  rk4, whose errors add
@@ -77,11 +78,13 @@ saddle() {
     done
 }
 
-# passage PART SCENE FREQUENCY PERIOD
+# passage PART SCENE FREQUENCY PERIOD [KIND]
 passage() {
+    kind=${5:-passage}
     test $half = both || test $half = $1 || return
     t_end=$(number "5*$4")
-    for x in 0.15 0.3 0.5 0.8 1.2 1.8 2.5; do
+    for x in $(test $kind = drive && echo 0.3 1 2 3 4.5 6.2832 ||
+        echo 0.15 0.3 0.5 0.8 1.2 1.8 2.5); do
         dt=$(number "$x/$3")
         timeout 60 "$nevh" check "$root/$2.nevh" --t-end $t_end --dt $dt \
             --integrators $schemes --format csv >"$work/check" 2>/dev/null
@@ -89,7 +92,8 @@ passage() {
             --integrators $schemes --format csv 2>/dev/null >"$work/compare"
         warned 'too long for' >"$work/warned"
         grep -v '^#' "$work/compare" | sed 's/"[^"]*"/"/g' |
-            awk -F, -v warned="$work/warned" -v part=$1 -v scene=$2 -v dt=$dt '
+            awk -F, -v warned="$work/warned" -v part=$1 \
+                -v kind=$kind -v scene=$2 -v dt=$dt '
                 BEGIN { while ((getline scheme < warned) > 0) says[scheme] = 1 }
                 FNR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
                 $at["steps"] == "" { next }
@@ -99,7 +103,7 @@ passage() {
                     breaks = status != "ok" && status !~ /^unstable/
                     wrong = breaks || error == "" || error > 0.1
                     other = wrong || verdict == "unstable" || $at["state_error"] > 0.5
-                    print "passage", part, scheme, says[scheme] + 0, wrong, other,
+                    print kind, part, scheme, says[scheme] + 0, wrong, other,
                         scene, "dt =", dt, "error", error, $at["state_error"]
                 }'
     done
@@ -118,10 +122,23 @@ passage() {
             passage $part $scene $omega $period
         done
     done
+    while read -r scene omega period; do
+        passage other $scene $omega $period drive
+    done <<EOF
+scenes/kapitza 100 4
+scenes/damped-driven-pendulum 0.667 9.4
+bench/textbook/driven-duffing 1.1 5.7
+bench/textbook/driven-morse 0.6 10.5
+bench/textbook/driven-pendulum 0.7 9
+bench/textbook/mathieu-stable 2 6.3
+bench/textbook/paul-trap 2 10
+bench/blind/mass-filter 2 8.25
+bench/blind/pendulum-kicked 1 6.28
+EOF
 } >"$work/all"
 
 awk '{
-    kind = $1 " " $2 ($1 == "passage" && $3 == "rk4" ? " rk4" : "")
+    kind = $1 " " $2 ($1 != "saddle" && $3 == "rk4" ? " rk4" : "")
     if ($4) { warned[kind]++; right[kind] += $6 } else { silent[kind]++; missed[kind] += $5 }
     if ($4 && !$6) print "not wrong: " $0
     if (!$4 && $5) print "no warning: " $0
