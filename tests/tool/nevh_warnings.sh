@@ -72,6 +72,10 @@ for dt in 0.05 0.02 0.005; do
         is "$named == ($large > 0.1)"
     done
 done
+exits 0 run kepler-0.9 --t-end 20 --dt 0.02 --integrators verlet
+says 'warning: dt = 0\.02 is too long for verlet: '
+exits 0 run kepler-0.9 --t-end 20 --dt 0.002 --integrators verlet
+grep -q 'too long' $work/err && fails "warns of short steps"
 exits 0 check kepler-0.9 --t-end 20 --dt 0.02 --integrators verlet --format csv
 dt=$(sed -n 's/^# Warning: dt.*; dt = \([0-9.]*\) keeps it below 1 %\.$/\1/p' $work/out)
 is "\"$dt\" > 0 && \"$dt\" < 0.02"

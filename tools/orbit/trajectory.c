@@ -244,6 +244,7 @@ static void doubt(trajectory *r) {
                     ? plan_doubts_again(p, r->integrator, p->dt[0])
                 : p->balance && has_grown(r) ? ends_text(p, plan_ends(p))
                                              : NULL;
+    bool known = why;
     if (suspect && !why && r->changed > all * scale)
         why = text_print("the energy changes by up to %.2g times its scale: "
                          "these steps are no measure of the orbit; take a "
@@ -251,7 +252,7 @@ static void doubt(trajectory *r) {
                          r->changed / scale);
     if (why)
         warn(r, why);
-    else if (shorter)
+    if (!known && shorter)
         warn_of_steps(r, scale);
 }
 
