@@ -129,8 +129,8 @@ static int carry_panels(inside *x) {
     return status;
 }
 
-/* Replaces areas that are not certain to NEVH__LOOP_CERTAIN by those of the inside that are more
-   certain. */
+/* Replaces areas that are not certain to NEVH__LOOP_CERTAIN by those of the inside that
+   are more certain. */
 static void take_over(inside *x) {
     nevh_loop *l = x->loop;
     for (size_t i = 0; i < l->reach; i++) {

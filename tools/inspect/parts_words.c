@@ -114,12 +114,10 @@ static void all_words(const plan *p, const nevh_stepper *s, double ratio,
                "exact: %s; B, which kicks: %s",
                list_joined(&fast), *b ? b : "nothing");
     if (pairs)
-        list_print(
-            notes,
-            "  A has bodies that move about one another, too, in pairs, as "
-            "%s (Jacobi coordinates); B has what their forces differ "
-            "from that",
-            bodies);
+        list_print(notes,
+                   "A moves bodies about one another, too, in Jacobi "
+                   "coordinates: %s; B has what their forces differ from that",
+                   bodies);
     size_words(p, ratio, pairs > 0, notes);
 }
 
