@@ -19,6 +19,8 @@ libnevh_core_la_SOURCES += \
 	integrators/kernels/form_block_private.h \
 	integrators/kernels/form_block.c \
 	integrators/kernels/hierarchy_private.h \
+	integrators/kernels/hierarchy_inside_private.h \
+	integrators/kernels/hierarchy_find.c \
 	integrators/kernels/hierarchy.c \
 	integrators/kernels/form_flow_private.h \
 	integrators/kernels/form_flow.c \

@@ -165,10 +165,13 @@ NEVH_API nevh_field *nevh_stepper_field(nevh_stepper *);
    returns  the number of pairs; 0: there are none, or the scheme is another one */
 NEVH_API size_t nevh_stepper_hierarchy(const nevh_stepper *, char text[],
                                        size_t size, bool *whole);
+/* The first coordinate of the body that coordinate k belongs to; k where no pair moves
+   it. */
+NEVH_API size_t nevh_stepper_body(const nevh_stepper *, size_t k);
 /* The gradient of B, by which a scheme by parts kicks; of other schemes that of H.
-   t, q, p  one state
+   t, q, p  one state: the stepper's width has to be 1
    dh_dq    out, n numbers
-   returns  NEVH_OK or a status, recorded in the stepper's field */
+   returns  NEVH_OK; NEVH_EINVAL; or a status that is recorded in the stepper's field */
 NEVH_API int nevh_stepper_kick(nevh_stepper *, double t, const double q[],
                                const double p[], double dh_dq[]);
 

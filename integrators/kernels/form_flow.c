@@ -271,10 +271,11 @@ static int plan_bodies(nevh__form_flow *f, nevh_work *w) {
     double *inverse_mass = nevh__array(f->n, sizeof *inverse_mass);
     for (size_t i = f->n_bound; inverse_mass && i < f->n_blocks; i++)
         inverse_mass[f->blocks[i].index[0]] = (double)f->blocks[i].a[1];
-    int status = inverse_mass
-                     ? nevh__hierarchy_new(w->field, inverse_mass,
-                                           w->options->q, w->width, &f->bodies)
-                     : NEVH_ENOMEM;
+    int status =
+        inverse_mass
+            ? nevh__hierarchy_new(w->field, inverse_mass, w->options->q,
+                                  w->options->p, w->width, &f->bodies)
+            : NEVH_ENOMEM;
     free(inverse_mass);
     return status;
 }

@@ -5,156 +5,34 @@
    the k of all pairs between them.  Together they are a group.  This is a canonical
    change of coordinates in which T keeps its form [C. D. Murray, S. F. Dermott,
    Solar System Dynamics (1999), section 9.2; J. Wisdom, M. Holman, Symplectic maps for
-   the n-body problem, Astron. J. 102 (1991) 1528-1538].  The pairs are those of
-   the shortest period at the state to plan at, one after another, so that moons
-   move about planets and binaries about one another.
+   the n-body problem, Astron. J. 102 (1991) 1528-1538].
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "hierarchy_private.h"
+#include "hierarchy_inside_private.h"
 #include "kepler_flow_private.h"
-#include <float.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { MOST_BODIES = NEVH__MOST_BODIES, MOST_GROUPS = 2 * MOST_BODIES - 1 };
-
-/* Bodies are the first groups; a pair of groups comes after both. */
-typedef struct {
-    size_t of[2];    /* the groups of a pair */
-    double share[2]; /* of the mass that each of them has */
-    double mass, k;  /* K of a pair */
-    double mu;       /* of its motion: K by the reduced mass */
-    bool inside;     /* it is part of a pair */
-} group;
-
-struct nevh__hierarchy {
-    size_t space, n_bodies, n_groups;
-    bool whole; /* B is 0: there are no other terms, and bodies are in twos */
-    size_t place[MOST_BODIES][NEVH__SPACE]; /* of a body's coordinates */
-    double inverse_mass[MOST_BODIES];
-    group groups[MOST_GROUPS];
-};
-
-/* Padded with zeros to a vector. */
-enum { WIDE = 4 };
-typedef struct {
-    double x[WIDE];
-} point;
-
-/* A search for bodies. */
-typedef struct {
-    nevh__hierarchy *h;
-    const nevh_field *field;
-    const double *inverse_mass;
-    size_t *body; /* of each coordinate, and 1; 0: none */
-    double k[MOST_BODIES][MOST_BODIES];
-    bool others; /* terms of B that are no pairs */
-    bool given;  /* an effect with such bodies is to be fast */
-} finding;
 
 void nevh__hierarchy_free(nevh__hierarchy *h) {
     free(h);
 }
 
-bool nevh__hierarchy_moves(const nevh__hierarchy *h, size_t coordinate) {
+/* The number of bodies if it is none of theirs. */
+static size_t body_with(const nevh__hierarchy *h, size_t coordinate) {
     for (size_t i = 0; i < h->n_bodies; i++)
         for (size_t k = 0; k < h->space; k++)
             if (h->place[i][k] == coordinate)
-                return true;
-    return false;
+                return i;
+    return h->n_bodies;
 }
 
-/* Up to rounding: of p_x^2/(2*m) + p_y^2/2/m, say. */
-static bool is_same_mass(double a, double b) {
-    return fabs(a - b) <= 4 * DBL_EPSILON * fabs(a);
+bool nevh__hierarchy_moves(const nevh__hierarchy *h, size_t coordinate) {
+    return body_with(h, coordinate) < h->n_bodies;
 }
 
-/* The body that has these coordinates, which is added if all of them are free;
-   MOST_BODIES: there is none. */
-static size_t body_of(finding *f, const size_t place[]) {
-    nevh__hierarchy *h = f->h;
-    size_t is = f->body[place[0]];
-    for (size_t k = 0; k < h->space; k++)
-        if (f->body[place[k]] != is ||
-            (is && h->place[is - 1][k] != place[k]) ||
-            !(f->inverse_mass[place[k]] > 0) ||
-            !is_same_mass(f->inverse_mass[place[k]], f->inverse_mass[place[0]]))
-            return MOST_BODIES;
-    if (is || h->n_bodies == MOST_BODIES)
-        return is ? is - 1 : MOST_BODIES;
-    for (size_t k = 0; k < h->space; k++) {
-        h->place[h->n_bodies][k] = place[k];
-        f->body[place[k]] = h->n_bodies + 1;
-    }
-    h->inverse_mass[h->n_bodies] = f->inverse_mass[place[0]];
-    h->groups[h->n_bodies].mass = 1 / f->inverse_mass[place[0]];
-    return h->n_bodies++;
-}
-
-/* Coordinates of both bodies, in the order of the first; masses tell which is whose,
-   or else the order of the coordinates. */
-static bool take_pair(finding *f, const nevh__planned *term, size_t instance,
-                      double k, const size_t beside[]) {
-    size_t place[2][NEVH__SPACE] = {{0}}, space = 0;
-    for (size_t i = 0; i < term->nq; i++) {
-        size_t a = nevh__index(term, instance, i);
-        size_t b = nevh__index(term, instance, beside[i]);
-        double mass = f->inverse_mass[a], first = f->inverse_mass[place[0][0]];
-        if (a > b)
-            continue;
-        bool other = space && !is_same_mass(mass, first) &&
-                     is_same_mass(f->inverse_mass[b], first);
-        place[0][space] = other ? b : a;
-        place[1][space++] = other ? a : b;
-    }
-    if (f->h->space && f->h->space != space)
-        return false;
-    f->h->space = space;
-    size_t a = body_of(f, place[0]), b = body_of(f, place[1]);
-    if (a == MOST_BODIES || b == MOST_BODIES || a == b)
-        return false;
-    f->k[a][b] += k;
-    f->k[b][a] += k;
-    return true;
-}
-
-/* False: its bodies are none that the hierarchy can have. */
-static bool take_term(finding *f, const nevh__planned *term, double *room) {
-    const nevh_system *s = f->field->system;
-    size_t beside[NEVH__PAIR];
-    double k;
-    nevh_speed speed = s->effects[term->term->effect].speed;
-    f->given = f->given || (term->part == NEVH__KICK && speed == NEVH_FAST);
-    bool fits = term->part == NEVH__KICK && speed != NEVH_SLOW &&
-                term->term->decl.count <= MOST_BODIES * (MOST_BODIES - 1) / 2;
-    for (size_t i = 0; fits && i < term->term->decl.count; i++) {
-        if (!nevh__pair_find(term->term, i, &k, beside, room)) {
-            fits = false;
-            if (i) /* some of its instances are pairs */
-                return false;
-            break;
-        }
-        if (!take_pair(f, term, i, k, beside))
-            return false;
-    }
-    f->others = f->others || (!fits && term->part == NEVH__KICK);
-    return true;
-}
-
-static int find_bodies(finding *f, bool *found) {
-    *found = true;
-    for (size_t i = 0; *found && i < f->field->n_terms; i++) {
-        const nevh__planned *term = &f->field->terms[i];
-        double *room =
-            nevh__array(nevh__form_room(&term->term->decl), sizeof *room);
-        if (!room)
-            return NEVH_ENOMEM;
-        *found = take_term(f, term, room);
-        free(room);
-    }
-    *found = *found && f->h->n_bodies;
-    return NEVH_OK;
+size_t nevh__hierarchy_body(const nevh__hierarchy *h, size_t coordinate) {
+    size_t i = body_with(h, coordinate);
+    return i < h->n_bodies ? h->place[i][0] : coordinate;
 }
 
 /* Centres of mass of all groups, from those of bodies. */
@@ -167,11 +45,8 @@ NEVH_SIMD static void find_centres(const nevh__hierarchy *h, point at[]) {
     }
 }
 
-static inline point between(const point at[], size_t a, size_t b) {
-    point r;
-    for (size_t k = 0; k < WIDE; k++)
-        r.x[k] = at[b].x[k] - at[a].x[k];
-    return r;
+void nevh__hierarchy_centres(const nevh__hierarchy *h, point at[]) {
+    find_centres(h, at);
 }
 
 /* The last pair is repeated. */
@@ -196,68 +71,6 @@ static inline point point_of(const double rows[], size_t lane, double factor) {
     const double *x = rows + lane;
     return (point){{factor * x[0], factor * x[NEVH__LANES],
                     factor * x[2 * NEVH__LANES], 0}};
-}
-
-static double length(point r) {
-    return hypot(hypot(r.x[0], r.x[1]), r.x[2]);
-}
-
-/* Groups that are no part of a pair yet, and k between them. */
-typedef struct {
-    size_t count, group[MOST_BODIES];
-    double k[MOST_BODIES][MOST_BODIES];
-} loose;
-
-/* The square of the frequency of a circle. */
-static double rate_of(const nevh__hierarchy *h, const loose *l,
-                      const point at[], size_t i, size_t j) {
-    const group *a = &h->groups[l->group[i]], *b = &h->groups[l->group[j]];
-    double r = length(between(at, l->group[i], l->group[j]));
-    return fabs(l->k[i][j]) * (1 / a->mass + 1 / b->mass) / (r * r * r);
-}
-
-/* Group i of the loose ones takes group j; the heavier one is the first. */
-static void take_group(nevh__hierarchy *h, loose *l, size_t i, size_t j) {
-    group *x = &h->groups[h->n_groups];
-    size_t a = l->group[i], b = l->group[j];
-    bool turned = h->groups[b].mass > h->groups[a].mass;
-    *x = (group){.of = {turned ? b : a, turned ? a : b},
-                 .mass = h->groups[a].mass + h->groups[b].mass,
-                 .k = l->k[i][j]};
-    for (int side = 0; side < 2; side++) {
-        x->share[side] = h->groups[x->of[side]].mass / x->mass;
-        h->groups[x->of[side]].inside = true;
-        h->whole = h->whole && x->of[side] < h->n_bodies;
-    }
-    x->mu = x->k / x->mass / (x->share[0] * x->share[1]);
-    l->group[i] = h->n_groups++;
-    l->group[j] = l->group[--l->count];
-    for (size_t c = 0; c <= l->count; c++)
-        l->k[c][i] = l->k[i][c] += l->k[j][c];
-    for (size_t c = 0; c < l->count; c++)
-        l->k[c][j] = l->k[j][c] = l->k[l->count][c];
-    l->k[i][i] = l->k[j][j] = 0;
-}
-
-/* Makes pairs until no group acts on another one; false where two are at one place. */
-static bool pair_up(nevh__hierarchy *h, loose *l, point at[]) {
-    h->n_groups = l->count;
-    for (;;) {
-        double most = 0;
-        size_t i = 0, j = 0;
-        for (size_t a = 0; a < l->count; a++)
-            for (size_t b = a + 1; b < l->count; b++) {
-                double rate = rate_of(h, l, at, a, b);
-                if (!isfinite(rate))
-                    return false;
-                if (rate > most)
-                    most = rate, i = a, j = b;
-            }
-        if (most == 0)
-            return true;
-        take_group(h, l, i, j);
-        find_centres(h, at);
-    }
 }
 
 enum { ROWS = NEVH__SPACE * NEVH__LANES };
@@ -307,67 +120,9 @@ NEVH_SIMD static void add_slopes(const nevh__hierarchy *h, const point at[],
             slope[i].x[k] += sign * of[i].x[k];
 }
 
-/* True if B is smaller than half of A for each body. */
-static bool helps(const finding *f, const point at[]) {
-    const nevh__hierarchy *h = f->h;
-    point of_a[MOST_BODIES] = {{{0}}};
-    add_slopes(h, at, 1, of_a);
-    for (size_t i = 0; i < h->n_bodies; i++) {
-        point rest = of_a[i];
-        for (size_t j = 0; j < h->n_bodies; j++) {
-            point r = between(at, i, j);
-            double d = length(r);
-            for (size_t k = 0; j != i && k < h->space; k++)
-                rest.x[k] += f->k[i][j] * r.x[k] / d / d / d;
-        }
-        if (!(length(rest) < length(of_a[i]) / 2))
-            return false;
-    }
-    return true;
-}
-
-/* True if there is a hierarchy, and it helps or is asked for. */
-static bool find_pairs(finding *f, const double q[], size_t width, loose *l) {
-    point at[MOST_GROUPS] = {{{0}}};
-    nevh__hierarchy *h = f->h;
-    for (size_t i = 0; i < h->n_bodies; i++) {
-        l->group[i] = i;
-        for (size_t j = 0; j < h->n_bodies; j++)
-            l->k[i][j] = f->k[i][j];
-        for (size_t k = 0; k < h->space; k++)
-            at[i].x[k] = q[h->place[i][k] * width];
-    }
-    l->count = h->n_bodies;
-    h->whole = !f->others;
-    return pair_up(h, l, at) && (f->given || helps(f, at));
-}
-
-int nevh__hierarchy_new(const nevh_field *field, const double inverse_mass[],
-                        const double q[], size_t width,
-                        nevh__hierarchy **found) {
-    finding *f = nevh__array(1, sizeof *f);
-    loose *l = nevh__array(1, sizeof *l);
-    nevh__hierarchy *h = nevh__array(1, sizeof *h);
-    size_t *body = nevh__array(field->n, sizeof *body);
-    int status = f && l && h && body ? NEVH_OK : NEVH_ENOMEM;
-    bool any = false;
-    if (!status) {
-        f->h = h;
-        f->field = field;
-        f->inverse_mass = inverse_mass;
-        f->body = body;
-        status = find_bodies(f, &any);
-    }
-    any = any && !status && q && find_pairs(f, q, width, l);
-    *found = any ? h : NULL;
-    if (!status && f->given && !any)
-        status = NEVH_ESTRUCT;
-    if (!any)
-        free(h);
-    free(f);
-    free(l);
-    free(body);
-    return status;
+void nevh__hierarchy_slopes(const nevh__hierarchy *h, const point at[],
+                            double sign, point slope[]) {
+    add_slopes(h, at, sign, slope);
 }
 
 /* States of groups, of which changes are made, and of pairs in rows. */
@@ -489,8 +244,7 @@ void nevh__hierarchy_lessen(const nevh__hierarchy *h, size_t width,
 /* Appends to the text as far as there is room. */
 static void put_words(char *text, size_t size, const char *word) {
     size_t at = strlen(text);
-    if (at + strlen(word) < size)
-        strcpy(text + at, word);
+    snprintf(text + at, size - at, "%s", word);
 }
 
 static void put_group(const nevh__hierarchy *h, const nevh_system *s, size_t g,

@@ -148,6 +148,12 @@ size_t nevh_stepper_hierarchy(const nevh_stepper *s, char text[], size_t size,
     return h ? nevh__hierarchy_words(h, s->work.system, text, size) : 0;
 }
 
+size_t nevh_stepper_body(const nevh_stepper *s, size_t k) {
+    const nevh__hierarchy *h =
+        s && s->planned ? nevh__parts_hierarchy(&s->work) : NULL;
+    return h ? nevh__hierarchy_body(h, k) : k;
+}
+
 int nevh_stepper_kick(nevh_stepper *s, double t, const double q[],
                       const double p[], double dh_dq[]) {
     if (!s || !s->planned || s->work.width != 1 || !q || !p || !dh_dq)

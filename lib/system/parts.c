@@ -235,6 +235,21 @@ static bool find_beside(const trial *x, size_t beside[]) {
     return fine;
 }
 
+/* True if all values are 0, as those of a charge that is 0. */
+static bool is_nothing(const trial *x) {
+    double distance[NEVH__LANES];
+    uint64_t random = 7;
+    for (size_t i = 0; i < TRIALS_FAR; i++) {
+        for (size_t j = 0; j < NEVH__LANES * x->nv; j++)
+            x->z[j] = ldexp(nevh__random(&random), far_powers[i]);
+        take_values(x, distance);
+        for (size_t lane = 0; lane < NEVH__LANES; lane++)
+            if (x->h[lane] != 0)
+                return false;
+    }
+    return true;
+}
+
 /* Between two points in a lane. */
 static double apart(const trial *x, const size_t beside[], size_t lane) {
     const double *z = x->z + lane;
@@ -255,6 +270,9 @@ bool nevh__pair_find(const nevh__term_entry *term, size_t instance, double *k,
         decl->np || decl->time)
         return false;
     trial x = parts_lay_out(term, instance, room);
+    *k = 0;
+    if (is_nothing(&x))
+        return true;
     if (!find_beside(&x, beside))
         return false;
     *k = NAN;

@@ -45,8 +45,8 @@ enum { NEVH__SPACE = 3 }; /* the most of these */
 bool nevh__centre_find(const nevh__term_entry *, size_t instance, double *k,
                        double room[]);
 /* The k of an instance that is -k/|a - b| of two points in NEVH__PLANE or NEVH__SPACE
-   dimensions, and of each of its coordinates that of the other point beside it; false:
-   it is not. */
+   dimensions, and of each of its coordinates that of the other point beside it, which is not
+   written where k is 0; false: it is not. */
 enum { NEVH__PLANE = 2, NEVH__PAIR = 2 * NEVH__SPACE };
 bool nevh__pair_find(const nevh__term_entry *, size_t instance, double *k,
                      size_t beside[NEVH__PAIR], double room[]);

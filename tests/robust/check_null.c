@@ -208,6 +208,7 @@ static nevh_separability separability;
     X(ANY, nevh_stepper_counts, (NULL))                                        \
     X(POINTER, nevh_stepper_field, (NULL))                                     \
     X(NUMBER, nevh_stepper_hierarchy, (NULL, NULL, 0, NULL))                   \
+    X(NUMBER, nevh_stepper_body, (NULL, 0))                                    \
     X(STATUS, nevh_stepper_kick, (NULL, 0, out, out, out))                     \
     X(STATUS, nevh_run, (NULL, 0.1, 0.1, 1, out, out, NULL, 0))                \
     X(STATUS, nevh_run_until, (NULL, 0.1, 0.1, 0.1, out, out, NULL, 0))        \

@@ -20,8 +20,8 @@ nevh_options plan_options(const plan *p, const char *gradient) {
                           .native_cache = p->no_cache ? "" : NULL};
 }
 
-/* Two bodies that move about one another. */
-static bool are_two_bodies(const plan *p) {
+/* True if pairs of bodies are all of H. */
+static bool are_pairs_all(const plan *p) {
     enum { MOST = 6 }; /* coordinates */
     bool whole = false;
     if (p->n > MOST)
@@ -39,7 +39,7 @@ bool plan_parts_are_all(const plan *p) {
         if (nevh_system_parts(p->system, nevh_system_effect_name(p->system, i),
                               &fast, &slow, NULL) ||
             slow)
-            return are_two_bodies(p);
+            return are_pairs_all(p);
         found += fast;
     }
     return found > 0;

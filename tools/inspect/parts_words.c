@@ -3,15 +3,15 @@
 #include "parts_words.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* The largest forces on each coordinate, along an orbit. */
 typedef struct {
     nevh_field *all;    /* gradients of H */
     nevh_stepper *slow; /* and of B */
     size_t n;
-    double *whole, *part, *speed; /* at one state */
-    double *most;                 /* of A, and of B behind it */
-    double *fastest, *mass;       /* the largest |p|, and p by dq/dt there */
+    double *whole, *part; /* at one state */
+    double *most;         /* of A, and of B behind it */
     size_t states;
 } forces;
 
@@ -19,43 +19,40 @@ static int take_forces(void *data, size_t step, double t, const double q[],
                        const double p[]) {
     forces *f = data;
     (void)step;
-    if (nevh_field_gradient(f->all, 1, &t, q, p, f->whole, f->speed) ||
+    if (nevh_field_gradient(f->all, 1, &t, q, p, f->whole, NULL) ||
         nevh_stepper_kick(f->slow, t, q, p, f->part))
         return 1;
     f->states++;
     for (size_t k = 0; k < f->n; k++) {
-        if (fabs(p[k]) > f->fastest[k] && f->speed[k] != 0) {
-            f->fastest[k] = fabs(p[k]);
-            f->mass[k] = p[k] / f->speed[k];
-        }
         f->most[k] = fmax(f->most[k], fabs(f->whole[k] - f->part[k]));
         f->most[f->n + k] = fmax(f->most[f->n + k], fabs(f->part[k]));
     }
     return 0;
 }
 
-/* The largest force of A on a coordinate; of bodies that move about one another, on those
-   of the same mass. */
-static double largest_of_a(const forces *f, size_t k, bool bodies) {
+/* The largest force of A on a coordinate, or on others of its body. */
+static double largest_of_a(const forces *f, size_t k) {
     double most = f->most[k];
-    for (size_t j = 0; bodies && j < f->n; j++)
-        if (fabs(f->mass[j] - f->mass[k]) <= 1e-6 * fabs(f->mass[k]))
+    size_t body = nevh_stepper_body(f->slow, k);
+    for (size_t j = 0; j < f->n; j++)
+        if (nevh_stepper_body(f->slow, j) == body)
             most = fmax(most, f->most[j]);
     return most;
 }
 
 /* The largest force of B over that of A; infinite where A has none, or B is not finite
    at the start. */
-static double ratio_along(const plan *p, nevh_stepper *s, bool bodies) {
-    enum { STEPS = 1000, ROWS = 9 };
+static double ratio_along(const plan *p, nevh_stepper *s) {
+    enum { STEPS = 1000 };
     nevh_options o = plan_options(p, p->gradients.item[0]);
-    double *room = tool_allocate(ROWS * p->n, sizeof *room), worst;
-    forces f = {.all = nevh_field_new(p->system, &o), .slow = s, .n = p->n};
-    double **rows[] = {&f.whole,   &f.part, &f.speed,
-                       &f.fastest, &f.mass, &f.most};
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-        *rows[i] = room + i * p->n;
-    double *q = f.most + 2 * p->n, *momenta = q + p->n;
+    double *room = tool_allocate(6 * p->n, sizeof *room), worst;
+    forces f = {.all = nevh_field_new(p->system, &o),
+                .slow = s,
+                .n = p->n,
+                .whole = room,
+                .part = room + p->n,
+                .most = room + 2 * p->n};
+    double *q = room + 4 * p->n, *momenta = q + p->n;
     for (size_t k = 0; k < p->n; k++) {
         q[k] = p->q[k];
         momenta[k] = p->p[k];
@@ -66,7 +63,7 @@ static double ratio_along(const plan *p, nevh_stepper *s, bool bodies) {
     worst = f.states ? 0 : INFINITY;
     for (size_t k = 0; k < p->n; k++)
         if (f.most[p->n + k] > 0)
-            worst = fmax(worst, f.most[p->n + k] / largest_of_a(&f, k, bodies));
+            worst = fmax(worst, f.most[p->n + k] / largest_of_a(&f, k));
     nevh_field_free(f.all);
     return worst;
 }
@@ -104,7 +101,8 @@ static void size_words(const plan *p, double ratio, bool bodies, list *notes) {
 
 static void all_words(const plan *p, const nevh_stepper *s, double ratio,
                       list *notes) {
-    char bodies[400];
+    enum { MOST = 1000 };
+    char bodies[MOST];
     list fast = {0}, slow = {0};
     size_t pairs = nevh_stepper_hierarchy(s, bodies, sizeof bodies, NULL);
     name_parts(p, &fast, &slow);
@@ -114,10 +112,11 @@ static void all_words(const plan *p, const nevh_stepper *s, double ratio,
                "exact: %s; B, which kicks: %s",
                list_joined(&fast), *b ? b : "nothing");
     if (pairs)
-        list_print(notes,
-                   "A moves bodies about one another, too, in Jacobi "
-                   "coordinates: %s; B has what their forces differ from that",
-                   bodies);
+        list_print(
+            notes,
+            "A moves bodies about one another, too, in Jacobi "
+            "coordinates: %s%s; B has what their forces differ from that",
+            bodies, strlen(bodies) + 1 < MOST ? "" : " ...");
     size_words(p, ratio, pairs > 0, notes);
 }
 
@@ -125,9 +124,7 @@ static void all_words(const plan *p, const nevh_stepper *s, double ratio,
 void parts_words(const plan *p, list *notes) {
     nevh_options o = plan_options(p, p->gradients.item[0]);
     nevh_stepper *s = nevh_stepper_new(p->system, nevh_aba864, &o);
-    bool bodies = nevh_stepper_hierarchy(s, NULL, 0, NULL) > 0;
-    double ratio =
-        nevh_stepper_status(s) ? INFINITY : ratio_along(p, s, bodies);
+    double ratio = nevh_stepper_status(s) ? INFINITY : ratio_along(p, s);
     if (isfinite(ratio))
         all_words(p, s, ratio, notes);
     nevh_stepper_free(s);
