@@ -11,14 +11,6 @@
 typedef double nevh__extended;
 #else
 typedef long double nevh__extended;
-/* The changes of eight such states over the same time, in rows of eight numbers.
-   good     out: 1, or 0 where the time is too long for this way, or differences of the
-            result are small, so that nevh__kepler_flow is to be called
-   cost     about 0.15 microseconds; no memory */
-void nevh__kepler_changes(const double mu[], double t, const double r[],
-                          const double v[], double dr[], double dv[],
-                          double good[]);
-
 #endif
 
 /* The flow of v^2/2 - mu/|r| over a time t of any sign; mu < 0 repels.
