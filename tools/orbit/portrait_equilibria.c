@@ -194,10 +194,11 @@ static void search_start(const survey *s) {
         add(s, z);
 }
 
-static void measure_row(const survey *s, size_t k, const double t[]) {
+/* room: t, x and y of all columns */
+static void measure_row(const survey *s, size_t k, double room[]) {
     nevh_field *field = s->l->field;
     double *f = s->f + k * COLUMNS, *g = f + COLUMNS * ROWS;
-    double x[COLUMNS], y[COLUMNS];
+    double *t = room, *x = t + COLUMNS, *y = x + COLUMNS;
     for (size_t i = 0; i < COLUMNS; i++) {
         x[i] = s->low[0] + s->cell[0] * (double)i;
         y[i] = s->low[1] + s->cell[1] * (double)k;
@@ -213,11 +214,11 @@ static void measure_row(const survey *s, size_t k, const double t[]) {
 }
 
 static void measure(const survey *s) {
-    double t[COLUMNS];
+    double *room = tool_allocate(3 * COLUMNS, sizeof *room);
     for (size_t i = 0; i < COLUMNS; i++)
-        t[i] = s->l->plan->run->t_start;
+        room[i] = s->l->plan->run->t_start;
     for (size_t k = 0; k < ROWS; k++)
-        measure_row(s, k, t);
+        measure_row(s, k, room);
 }
 
 /* Both derivatives, of all corners: not of one sign. */
