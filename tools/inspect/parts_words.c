@@ -13,6 +13,7 @@ typedef struct {
     double *whole, *part; /* at one state */
     double *most;         /* of A, and of B behind it */
     size_t states;
+    bool bodies; /* some coordinates are those of one body */
 } forces;
 
 static int take_forces(void *data, size_t step, double t, const double q[],
@@ -34,7 +35,7 @@ static int take_forces(void *data, size_t step, double t, const double q[],
 static double largest_of_a(const forces *f, size_t k) {
     double most = f->most[k];
     size_t body = nevh_stepper_body(f->slow, k);
-    for (size_t j = 0; j < f->n; j++)
+    for (size_t j = 0; f->bodies && j < f->n; j++)
         if (nevh_stepper_body(f->slow, j) == body)
             most = fmax(most, f->most[j]);
     return most;
@@ -51,7 +52,8 @@ static double ratio_along(const plan *p, nevh_stepper *s) {
                 .n = p->n,
                 .whole = room,
                 .part = room + p->n,
-                .most = room + 2 * p->n};
+                .most = room + 2 * p->n,
+                .bodies = nevh_stepper_hierarchy(s, NULL, 0, NULL) > 0};
     double *q = room + 4 * p->n, *momenta = q + p->n;
     for (size_t k = 0; k < p->n; k++) {
         q[k] = p->q[k];
