@@ -183,6 +183,12 @@ static bool is_inverse(double k, double h, double distance) {
     return fabs(h * distance + k) <= roundings * DBL_EPSILON * fabs(k);
 }
 
+/* Eight random states of that size. */
+static void spread(const trial *x, int power, uint64_t *random) {
+    for (size_t j = 0; j < NEVH__LANES * x->nv; j++)
+        x->z[j] = ldexp(nevh__random(random), power);
+}
+
 bool nevh__centre_find(const nevh__term_entry *term, size_t instance, double *k,
                        double room[]) {
     double distance[NEVH__LANES];
@@ -195,8 +201,7 @@ bool nevh__centre_find(const nevh__term_entry *term, size_t instance, double *k,
     take_values(&x, distance);
     *k = -x.h[0];
     for (size_t i = 0; i < TRIALS_FAR; i++) {
-        for (size_t j = 0; j < NEVH__LANES * x.nv; j++)
-            x.z[j] = ldexp(nevh__random(&random), far_powers[i]);
+        spread(&x, far_powers[i], &random);
         take_values(&x, distance);
         for (size_t lane = 0; lane < NEVH__LANES; lane++)
             if (!is_inverse(*k, x.h[lane], distance[lane]))
@@ -240,8 +245,7 @@ static bool is_nothing(const trial *x) {
     double distance[NEVH__LANES];
     uint64_t random = 7;
     for (size_t i = 0; i < TRIALS_FAR; i++) {
-        for (size_t j = 0; j < NEVH__LANES * x->nv; j++)
-            x->z[j] = ldexp(nevh__random(&random), far_powers[i]);
+        spread(x, far_powers[i], &random);
         take_values(x, distance);
         for (size_t lane = 0; lane < NEVH__LANES; lane++)
             if (x->h[lane] != 0)
@@ -277,8 +281,7 @@ bool nevh__pair_find(const nevh__term_entry *term, size_t instance, double *k,
         return false;
     *k = NAN;
     for (size_t i = 0; i < TRIALS_FAR; i++) {
-        for (size_t j = 0; j < NEVH__LANES * x.nv; j++)
-            x.z[j] = ldexp(nevh__random(&random), far_powers[i]);
+        spread(&x, far_powers[i], &random);
         take_values(&x, distance);
         if (!i)
             *k = -x.h[0] * apart(&x, beside, 0);
