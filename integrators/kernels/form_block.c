@@ -67,14 +67,16 @@ static const nevh__extended *exponential(const nevh__form_block *b, double t,
 }
 
 void nevh__form_block_store(const nevh__form_block *b, double t,
-                            nevh__extended *room, double high[], double low[],
-                            size_t first[], size_t last[]) {
+                            nevh__extended *room, double panels[],
+                            size_t ends[]) {
     const nevh__extended *d = exponential(b, t, room);
-    size_t m = 2 * b->count;
-    for (size_t j = 0; j <= m; j++)
-        first[j] = last[j] = 0;
+    size_t m = 2 * b->count, rows = nevh__panel_rows(m);
+    memset(panels, 0, nevh__panel_size(m) * sizeof *panels);
+    for (size_t k = 0; k < 2 * nevh__panel_count(m); k++)
+        ends[k] = 0;
     for (size_t i = 0; i < m; i++) {
         const nevh__extended *row = d + i * (m + 1);
+        size_t *first = ends + i / rows * 2, *last = first + 1;
         nevh__extended most = 0;
         for (size_t j = 0; j < m; j++)
             most = fmax(most, fabs(row[j]));
@@ -82,10 +84,11 @@ void nevh__form_block_store(const nevh__form_block *b, double t,
             bool counts = j == m ? row[j] != 0 : fabs(row[j]) > most * 0x1p-64;
             int unit = b->units[i] - (j < m ? b->units[j] : 0);
             nevh__extended x = counts ? ldexp(row[j], unit) : 0;
-            high[j * m + i] = (double)x;
-            low[j * m + i] = (double)(x - (double)x);
-            first[j] = counts && !last[j] ? i : first[j];
-            last[j] = counts ? i + 1 : last[j];
+            double *to = panels + nevh__panel_place(m, i, j);
+            to[0] = (double)x;
+            to[rows] = (double)(x - (double)x);
+            *first = counts && (!*last || j < *first) ? j : *first;
+            *last = counts && j + 1 > *last ? j + 1 : *last;
         }
     }
 }

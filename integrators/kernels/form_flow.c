@@ -18,25 +18,26 @@ enum { MOST_BLOCK = 128, SETS = 2 };
 
 typedef nevh__form_block block;
 
-/* Element by element in columns: (row, column) of D at column * m + row. */
+/* Matrices of all blocks, for each part of a step. */
 typedef struct {
     double h;
     bool made;
-    double *high, *low;
-    size_t *first, *last; /* rows of each column that are not 0 */
+    double *panels;
+    size_t *ends;
     double *free; /* n_times x 2 x n: D of free coordinates, and rests */
 } set;
 
 struct nevh__form_flow {
-    size_t n, n_blocks, n_times, size, columns; /* of a set for one time */
-    size_t n_bound;                             /* blocks that are not free */
-    block *blocks;                              /* these are the first */
+    size_t n, n_blocks, n_times, n_panels, n_ends; /* of a set for one time */
+    size_t n_bound; /* blocks that are not free */
+    block *blocks;  /* these are the first */
     size_t *index;
     nevh__extended *a, *room; /* all a; three matrices of the largest block */
     int *units;
     double *times;
     set sets[SETS];
-    size_t now;              /* the set in use */
+    size_t now; /* the set in use */
+    nevh__panels_fn *multiply;
     nevh__hierarchy *bodies; /* that are moved together, or NULL */
 };
 
@@ -44,10 +45,8 @@ void nevh__form_flow_free(nevh__form_flow *f) {
     if (!f)
         return;
     for (size_t i = 0; i < SETS; i++) {
-        free(f->sets[i].high);
-        free(f->sets[i].low);
-        free(f->sets[i].first);
-        free(f->sets[i].last);
+        free(f->sets[i].panels);
+        free(f->sets[i].ends);
         free(f->sets[i].free);
     }
     free(f->blocks);
@@ -165,7 +164,7 @@ static void choose_units(block *b) {
 }
 
 static bool plan_blocks(nevh__form_flow *f, map *x, const forest *trees) {
-    size_t elements = 0, columns = 0, most = 0;
+    size_t elements = 0, most = 0;
     for (size_t k = 0; k < f->n; k++)
         if (root(trees, k) == k)
             x->block[k] = f->n_blocks++;
@@ -181,27 +180,30 @@ static bool plan_blocks(nevh__form_flow *f, map *x, const forest *trees) {
         size_t m = 2 * b->count;
         b->index = index;
         index += b->count;
-        b->at = elements;
-        b->column = columns;
+        b->panels = f->n_panels;
+        b->ends = f->n_ends;
+        f->n_panels += nevh__panel_size(m);
+        f->n_ends += 2 * nevh__panel_count(m);
         elements += m * (m + 1);
-        columns += m + 1;
         most = m > most ? m : most;
     }
     for (size_t k = 0; k < f->n; k++) {
         const block *b = &f->blocks[x->block[k]];
         f->index[(size_t)(b->index - f->index) + x->place[k]] = k;
     }
-    f->size = elements;
-    f->columns = columns;
     if (most > 2 * MOST_BLOCK)
         return true;
     f->a = nevh__array(elements, sizeof *f->a);
     f->units = nevh__array(2 * f->n, sizeof *f->units);
     f->room = nevh__array(3 * most * (most + 1), sizeof *f->room);
-    for (size_t i = 0, k = 0; f->a && f->units && i < f->n_blocks; i++) {
-        f->blocks[i].a = f->a + f->blocks[i].at;
-        f->blocks[i].units = f->units + k;
-        k += 2 * f->blocks[i].count;
+    nevh__extended *a = f->a;
+    int *units = f->units;
+    for (size_t i = 0; a && units && i < f->n_blocks; i++) {
+        size_t m = 2 * f->blocks[i].count;
+        f->blocks[i].a = a;
+        f->blocks[i].units = units;
+        a += m * (m + 1);
+        units += m;
     }
     return f->a && f->units && f->room;
 }
@@ -209,13 +211,10 @@ static bool plan_blocks(nevh__form_flow *f, map *x, const forest *trees) {
 static bool plan_sets(nevh__form_flow *f) {
     bool all = true;
     for (set *x = f->sets; x < f->sets + SETS; x++) {
-        size_t size = f->n_times * f->size, columns = f->n_times * f->columns;
-        x->high = nevh__array(size, sizeof *x->high);
-        x->low = nevh__array(size, sizeof *x->low);
-        x->first = nevh__array(columns, sizeof *x->first);
-        x->last = nevh__array(columns, sizeof *x->last);
+        x->panels = nevh__array(f->n_times * f->n_panels, sizeof *x->panels);
+        x->ends = nevh__array(f->n_times * f->n_ends, sizeof *x->ends);
         x->free = nevh__array(f->n_times * 2 * f->n, sizeof *x->free);
-        all = all && x->high && x->low && x->first && x->last && x->free;
+        all = all && x->panels && x->ends && x->free;
     }
     return all;
 }
@@ -304,6 +303,7 @@ nevh__form_flow *nevh__form_flow_new(nevh_work *w, size_t count,
     if (f) {
         f->n = w->n;
         f->n_times = count;
+        f->multiply = nevh__panels_choose(NEVH__PANEL);
         f->times = nevh__copy(times, count, sizeof *times);
     }
     int status =
@@ -330,41 +330,58 @@ void nevh__form_flow_set(nevh__form_flow *f, double h) {
     for (size_t t = 0; t < f->n_times; t++)
         for (size_t i = 0; i < f->n_blocks; i++) {
             const block *b = &f->blocks[i];
-            size_t at = t * f->size + b->at,
-                   column = t * f->columns + b->column;
+            double *panels = x->panels + t * f->n_panels + b->panels;
             if (b->k == 0)
-                nevh__form_block_store(b, f->times[t] * h, f->room,
-                                       x->high + at, x->low + at,
-                                       x->first + column, x->last + column);
+                nevh__form_block_store(b, f->times[t] * h, f->room, panels,
+                                       x->ends + t * f->n_ends + b->ends);
             if (i < f->n_bound ||
                 (f->bodies && nevh__hierarchy_moves(f->bodies, b->index[0])))
                 continue;
-            x->free[2 * t * f->n + b->index[0]] = x->high[at + 2];
-            x->free[(2 * t + 1) * f->n + b->index[0]] = x->low[at + 2];
+            size_t drift = nevh__panel_place(2, 0, 1);
+            x->free[2 * t * f->n + b->index[0]] = panels[drift];
+            x->free[(2 * t + 1) * f->n + b->index[0]] = panels[drift + 2];
         }
 }
 
-/* One block, of orbits `width` apart.  high: room for m sums, and low. */
-NEVH__INLINE void add_block(const block *b, const double *d_high,
-                            const double *d_low, const size_t *first,
-                            const size_t *last, size_t width, const double q[],
-                            const double p[], double dq[], double dp[],
-                            double *high, double *low) {
-    size_t m = 2 * b->count;
-    for (size_t i = 0; i < m; i++)
-        high[i] = low[i] = 0;
-    for (size_t j = 0; j <= m; j++) {
-        double z = j == m ? 1 : (j % 2 ? p : q)[b->index[j / 2] * width];
-        const double *column_high = d_high + j * m, *column_low = d_low + j * m;
-        for (size_t i = first[j]; i < last[j]; i++) {
-            high[i] += column_high[i] * z;
-            low[i] += column_low[i] * z;
-        }
+/* A block of one, two or three coordinates, in lanes of `width` orbits. */
+NEVH__INLINE void add_few(size_t count, const size_t index[],
+                          const double panels[], size_t width, const double q[],
+                          const double p[], double dq[], double dp[]) {
+    size_t m = 2 * count;
+    double z[7], high[6] = {0}, low[6] = {0};
+    for (size_t k = 0; k < count; k++) {
+        z[2 * k] = q[index[k] * width];
+        z[2 * k + 1] = p[index[k] * width];
     }
+    z[m] = 1;
+    NEVH_UNROLL
+    for (size_t j = 0; j <= m; j++)
+        NEVH_UNROLL
+    for (size_t i = 0; i < m; i++) {
+        high[i] += panels[2 * m * j + i] * z[j];
+        low[i] += panels[2 * m * j + m + i] * z[j];
+    }
+    for (size_t k = 0; k < count; k++) {
+        dq[index[k] * width] += high[2 * k] + low[2 * k];
+        dp[index[k] * width] += high[2 * k + 1] + low[2 * k + 1];
+    }
+}
+
+static void add_many(const nevh__form_flow *f, const block *b,
+                     const double panels[], const size_t ends[], size_t width,
+                     const double q[], const double p[], double dq[],
+                     double dp[]) {
+    size_t m = 2 * b->count;
+    double z[2 * MOST_BLOCK + 1], sum[2 * MOST_BLOCK + NEVH__PANEL];
     for (size_t k = 0; k < b->count; k++) {
-        size_t at = b->index[k] * width;
-        dq[at] += high[2 * k] + low[2 * k];
-        dp[at] += high[2 * k + 1] + low[2 * k + 1];
+        z[2 * k] = q[b->index[k] * width];
+        z[2 * k + 1] = p[b->index[k] * width];
+    }
+    z[m] = 1;
+    f->multiply(m, panels, ends, z, sum);
+    for (size_t k = 0; k < b->count; k++) {
+        dq[b->index[k] * width] += sum[2 * k];
+        dp[b->index[k] * width] += sum[2 * k + 1];
     }
 }
 
@@ -400,19 +417,26 @@ NEVH_SIMD static void add_blocks(const nevh__form_flow *f, size_t which,
                                  size_t width, const double q[],
                                  const double p[], double dq[], double dp[]) {
     const set *x = &f->sets[f->now];
-    double high[2 * MOST_BLOCK], low[2 * MOST_BLOCK];
-    for (const block *b = f->blocks; b < f->blocks + f->n_bound; b++)
-        for (size_t lane = 0; lane < width; lane++) {
-            size_t at = which * f->size + b->at;
-            size_t column = which * f->columns + b->column;
+    for (const block *b = f->blocks; b < f->blocks + f->n_bound; b++) {
+        const double *panels = x->panels + which * f->n_panels + b->panels;
+        const size_t *ends = x->ends + which * f->n_ends + b->ends;
+        for (size_t i = 0; i < width; i++)
             if (b->k != 0)
-                add_centre(b, f->times[which] * x->h, width, q + lane, p + lane,
-                           dq + lane, dp + lane);
+                add_centre(b, f->times[which] * x->h, width, q + i, p + i,
+                           dq + i, dp + i);
+            else if (b->count == 1)
+                add_few(1, b->index, panels, width, q + i, p + i, dq + i,
+                        dp + i);
+            else if (b->count == 2)
+                add_few(2, b->index, panels, width, q + i, p + i, dq + i,
+                        dp + i);
+            else if (b->count == 3)
+                add_few(3, b->index, panels, width, q + i, p + i, dq + i,
+                        dp + i);
             else
-                add_block(b, x->high + at, x->low + at, x->first + column,
-                          x->last + column, width, q + lane, p + lane,
-                          dq + lane, dp + lane, high, low);
-        }
+                add_many(f, b, panels, ends, width, q + i, p + i, dq + i,
+                         dp + i);
+    }
 }
 
 void nevh__form_flow_add(const nevh__form_flow *f, size_t which, size_t width,

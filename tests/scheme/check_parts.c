@@ -1,5 +1,6 @@
 /* nevh tests: steps by parts.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "kernels/form_panel_private.h"
 #include "kernels/splitting_private.h"
 #include "support.h"
 #include <float.h>
@@ -382,4 +383,35 @@ TEST(form_of_values) {
     nevh_stepper_free(split);
     nevh_stepper_free(gauss);
     nevh_system_free(s);
+}
+
+/* All vectors give the bits of plain sums, over the columns between the ends. */
+TEST_EACH(panels_have_the_bits_of_sums, 4) {
+    static const size_t sizes[] = {8, 10, 32, 50};
+    enum { MOST = 56 };
+    size_t m = sizes[_i], size = nevh__panel_size(m), side;
+    static double panels[2 * MOST * (MOST + 1)];
+    double z[MOST + 1], sum[MOST];
+    size_t ends[2 * MOST];
+    for (size_t i = 0; i < size; i++)
+        panels[i] = sin(1 + (double)i) * (i / NEVH__PANEL % 2 ? 1e-17 : 1);
+    for (size_t i = 0; i <= m; i++)
+        z[i] = cos(3 * (double)i);
+    for (size_t k = 0; k < nevh__panel_count(m); k++) {
+        ends[2 * k] = k;
+        ends[2 * k + 1] = m + 1 - k;
+    }
+    for (side = 2; side <= 8; side *= 2) {
+        nevh__panels_choose(side)(m, panels, ends, z, sum);
+        for (size_t i = 0; i < m; i++) {
+            double high = 0, low = 0;
+            const size_t *of = ends + i / NEVH__PANEL * 2;
+            for (size_t j = of[0]; j < of[1]; j++) {
+                size_t at = nevh__panel_place(m, i, j);
+                high += panels[at] * z[j];
+                low += panels[at + NEVH__PANEL] * z[j];
+            }
+            ck_assert(sum[i] == high + low);
+        }
+    }
 }
