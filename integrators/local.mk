@@ -16,6 +16,8 @@ libnevh_core_la_SOURCES += \
 	integrators/kernels/kepler_flow_private.h \
 	integrators/kernels/kepler_flow.c \
 	integrators/kernels/kepler_lanes.c \
+	integrators/kernels/turn_private.h \
+	integrators/kernels/turn.c \
 	integrators/kernels/form_panel_private.h \
 	integrators/kernels/form_panel.c \
 	integrators/kernels/form_block_private.h \

@@ -20,6 +20,7 @@ libnevh_core_la_SOURCES = \
 	lib/system/parts_private.h \
 	lib/system/parts.c \
 	lib/system/centres.c \
+	lib/system/turns.c \
 	lib/system/kinetic.c \
 	lib/system/pairs.c \
 	lib/system/pairs_private.h \

@@ -4,6 +4,7 @@
 #include "hierarchy_private.h"
 #include "parts_step.h"
 #include "splitting_private.h"
+#include "turn_private.h"
 #include "work/work_private.h"
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +16,7 @@ static void clear(nevh_work *w) {
     if (!o)
         return;
     nevh__form_flow_free(o->flow);
+    nevh__turns_free(o->turns);
     free(o->operations);
     free(o);
     w->plan = NULL;
@@ -67,7 +69,13 @@ static int plan_operations(nevh_work *w, size_t substeps, double weights[]) {
             add(o, NEVH__INNER_KICK, weights[i] / (2 * parts));
         }
     }
-    o->kept = table->first == NEVH_DRIFT ? 0 : substeps ? NEVH__KICKS : 1;
+    if (nevh__turns_new(w->field, &o->turns))
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    o->turn = o->turns ? nevh__turns_add : NULL;
+    /* friction would change slopes of terms that read momenta */
+    o->kept = table->first == NEVH_DRIFT || o->turn ? 0
+              : substeps                            ? NEVH__KICKS
+                                                    : 1;
     o->set = nevh__form_flow_set;
     o->add = nevh__form_flow_add;
     o->flow = nevh__form_flow_new(w, find_flows(o, weights), weights);
@@ -104,7 +112,7 @@ static int plan(nevh_work *w) {
     if (status)
         return status;
     w->memory_rows = (2 + o->kept) * w->n + (o->kept > 0);
-    w->scratch_size = (4 + NEVH__KICKS) * w->size + w->width;
+    w->scratch_size = (5 + NEVH__KICKS) * w->size + w->width;
     return NEVH_OK;
 }
 
@@ -155,22 +163,28 @@ NEVH__INLINE int nevh__parts_slope(const nevh__parts_step *x, size_t size,
     nevh_work *w = x->owner->work;
     const double *has = first ? kept_slopes(w, x->scheme->kept) : NULL;
     double *slope = x->slope[o->kind], *time = x->owner->time;
+    bool outer = o->kind == NEVH__OUTER_KICK;
     const nevh__places at = {w->width,    time,  x->point[0],
-                             x->point[1], slope, NULL};
+                             x->point[1], slope, outer ? x->turn : NULL};
     int status = set_time(x, o, t);
     bool all = first;
     for (size_t lane = 0; all && lane < w->width; lane++)
         all = has[lane] != 0;
     if (!status && !all)
-        status = o->kind == NEVH__OUTER_KICK
-                     ? nevh__work_gradient_padded(w, w->width, &at)
-                     : nevh__work_inner_gradient(w, &at);
-    if (!status && !all && o->kind == NEVH__OUTER_KICK && x->scheme->lessen)
+        status = outer ? nevh__work_gradient_padded(w, w->width, &at)
+                       : nevh__work_inner_gradient(w, &at);
+    if (!status && !all && outer && x->scheme->lessen)
         x->scheme->lessen(x->scheme->flow, w->width, x->point[0], slope);
     for (size_t i = 0; !status && first && i < size; i++)
         if (has[i % w->width] != 0)
             slope[i] = kept_slopes(w, o->kind)[i];
     return status;
+}
+
+NEVH__INLINE void nevh__parts_turn(const nevh__parts_step *x, double weight) {
+    x->scheme->turn(x->scheme->turns, x->owner->work->width, weight,
+                    x->point[0], x->point[1], x->slope[NEVH__OUTER_KICK],
+                    x->turn, x->change[0], x->change[1]);
 }
 
 static void keep_slopes(nevh_work *w, const nevh__parts_step *x) {
@@ -193,6 +207,7 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
         x.point[i] = nevh__take(&row, w->size);
         x.slope[i] = nevh__take(&row, w->size);
     }
+    x.turn = x.scheme->turn ? nevh__take(&row, w->size) : NULL;
     const struct nevh__parts_owner owner = {w, row};
     x.owner = &owner;
     int status = nevh__parts_take(&x, w->size);

@@ -16,6 +16,7 @@ typedef struct {
     size_t which; /* the part of a step that a flow takes */
 } nevh__part_operation;
 
+struct nevh__turns;
 typedef struct {
     size_t count;
     nevh__part_operation *operations;
@@ -28,6 +29,11 @@ typedef struct {
     /* nevh__form_flow_lessen, of outer kicks; NULL: slopes are those of B */
     void (*lessen)(const struct nevh__form_flow *, size_t width,
                    const double q[], double dh_dq[]);
+    /* nevh__turns_add, of outer kicks; NULL: B reads no momenta */
+    void (*turn)(const struct nevh__turns *, size_t width, double h,
+                 const double q[], const double p[], const double slope_q[],
+                 const double slope_p[], double dq[], double dp[]);
+    struct nevh__turns *turns;
 } nevh__parts_scheme;
 
 #endif

@@ -26,6 +26,7 @@ typedef struct {
     nevh__number *change[2];      /* the increment so far */
     nevh__number *point[2];       /* state + change + lost */
     nevh__number *slope[NEVH__KICKS];
+    nevh__number *turn; /* dH/dp of B, where it turns coordinates */
     const struct nevh__parts_owner *owner; /* the includer's */
 } nevh__parts_step;
 
@@ -35,6 +36,8 @@ typedef struct {
 NEVH__INLINE int nevh__parts_slope(const nevh__parts_step *x, size_t size,
                                    const nevh__part_operation *o, double t,
                                    bool first);
+/* The includer's: adds a kick of B that turns coordinates to the change. */
+NEVH__INLINE void nevh__parts_turn(const nevh__parts_step *x, double weight);
 /* The includer's: adds a flow from the point to the change. */
 NEVH__INLINE int nevh__parts_flow(const nevh__parts_step *x,
                                   const nevh__part_operation *o, double t);
@@ -70,8 +73,13 @@ NEVH__INLINE int nevh__parts_operate(const nevh__parts_step *x, size_t size,
     }
     int status = nevh__parts_slope(x, size, o, t, first);
     const nevh__number *slope = x->slope[o->kind];
-    NEVH__EACH(i, 1, size) {
-        x->change[1][i] -= weight * slope[i];
+    if (o->kind == NEVH__OUTER_KICK && x->scheme->turn) {
+        nevh__parts_turn(x, weight);
+        nevh__parts_place(x, size, 0);
+    } else {
+        NEVH__EACH(i, 1, size) {
+            x->change[1][i] -= weight * slope[i];
+        }
     }
     nevh__parts_place(x, size, 1);
     return status;

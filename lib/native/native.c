@@ -110,7 +110,7 @@ static bool fill_adaptive_verlet(nevh__native *x, const nevh_work *w) {
     return x->times;
 }
 
-/* The first slope of each kind is kept; drifts are inner kicks. */
+/* The first slope of each kind is kept; kicks are of both halves, drifts inner kicks. */
 static bool fill_parts(nevh__native *x, const nevh_work *w) {
     const nevh__parts_scheme *scheme = w->plan;
     x->keeps = x->whole = scheme->kept > 0;
@@ -118,6 +118,10 @@ static bool fill_parts(nevh__native *x, const nevh_work *w) {
     for (size_t i = 0; i < scheme->count; i++) {
         x->kicks += scheme->operations[i].kind == NEVH__OUTER_KICK;
         x->drifts += scheme->operations[i].kind == NEVH__INNER_KICK;
+    }
+    for (size_t i = 0; i < w->field->n_terms; i++) {
+        x->kick_values[i] += x->drift_values[i];
+        x->drift_values[i] = 0;
     }
     w->field->parts = 1u << NEVH__INNER;
     nevh__slope_values(w->field, true, x->drift_values);
@@ -242,12 +246,11 @@ static bool native_fill(nevh__native *x, const nevh_work *w) {
         return true;
     x->kick_values = nevh__array(terms, sizeof *x->kick_values);
     x->drift_values = nevh__array(terms, sizeof *x->drift_values);
-    if (!x->kick_values || !x->drift_values ||
-        !families[family_of(w)].fill(x, w))
+    if (!x->kick_values || !x->drift_values)
         return false;
     nevh__slope_values(w->field, true, x->kick_values);
     nevh__slope_values(w->field, false, x->drift_values);
-    return true;
+    return families[family_of(w)].fill(x, w);
 }
 
 /* Gradients that a series takes as long as, and an implicit step of few stages,

@@ -17,6 +17,6 @@ bool nevh__write_parts(nevh__writer *w, nevh_work *work) {
     nevh__write_lines(w, nevh__parts_scheme_text);
     nevh__write_lines(w, nevh__parts_step_text);
     nevh__write_lines(w, nevh__parts_driver_text);
-    nevh__write_driver(w, true, 6);
+    nevh__write_driver(w, true, 7);
     return true;
 }

@@ -115,7 +115,8 @@ static int refuse_parts(nevh_stepper *s, const nevh__parts_fault *fault) {
     return nevh__fail(
         &s->report, NEVH_ESTRUCT,
         "%s needs H = A + V(q), where A has quadratic forms with "
-        "constant coefficients and -k/|q|, but term \"%s\" of effect "
+        "constant coefficients and -k/|q| and V may read actions "
+        "(q^2 + p^2)/2 for coordinates, but term \"%s\" of effect "
         "\"%s\" %s; schemes that fit: %s",
         scheme->name, fault->term->name, fault->term->effect, fault->reason,
         fit);

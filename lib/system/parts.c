@@ -292,6 +292,74 @@ bool nevh__pair_find(const nevh__term_entry *term, size_t instance, double *k,
     return *k != 0 && isfinite(*k);
 }
 
+/* The momentum of a coordinate among the variables; nv: it is not read. */
+static size_t momentum_of(const nevh_term *decl, size_t instance, size_t i) {
+    const size_t *q = decl->q + instance * decl->nq;
+    const size_t *p = decl->p + instance * decl->np;
+    size_t j = 0;
+    while (j < decl->np && p[j] != q[i])
+        j++;
+    return decl->nq + j;
+}
+
+/* s of each coordinate, from derivatives at one state, or 1. */
+static bool find_scales(const trial *x, size_t instance, double s[]) {
+    const nevh_term *decl = &x->term->decl;
+    uint64_t random = 3;
+    spread(x, 0, &random);
+    if (decl->gradient)
+        take_slopes(x, 1);
+    for (size_t i = 0; i < decl->nq; i++) {
+        size_t q = i * NEVH__LANES;
+        size_t p = momentum_of(decl, instance, i) * NEVH__LANES;
+        if (p == x->nv * NEVH__LANES)
+            return false;
+        double square = x->slope[q] / x->z[q] * (x->z[p] / x->slope[p]);
+        s[i] = decl->gradient && fabs(square - 1) > 1e-12 ? sqrt(square) : 1;
+        if (!(s[i] > 0) || !isfinite(s[i]))
+            return false;
+    }
+    return true;
+}
+
+/* Turns each oscillator of each lane by an angle of its own. */
+static void turn_all(const trial *x, size_t instance, const double s[]) {
+    const nevh_term *decl = &x->term->decl;
+    for (size_t i = 0; i < decl->nq; i++)
+        for (size_t lane = 0; lane < NEVH__LANES; lane++) {
+            double angle = 0.3 + (double)(lane + NEVH__LANES * i);
+            double *q = x->z + i * NEVH__LANES + lane;
+            double *p =
+                x->z + momentum_of(decl, instance, i) * NEVH__LANES + lane;
+            double c = cos(angle), d = sin(angle), old = *q;
+            *q = c * old + d * *p / s[i];
+            *p = c * *p - d * old * s[i];
+        }
+}
+
+bool nevh__turn_find(const nevh__term_entry *term, size_t instance, double s[],
+                     double room[]) {
+    static const int powers[] = {-40, -20, -7, 0, 5, 12, 30};
+    double value[NEVH__LANES], distance[NEVH__LANES];
+    uint64_t random = 1;
+    const nevh_term *decl = &term->decl;
+    if (decl->nq != decl->np || !decl->nq || decl->time)
+        return false;
+    trial x = parts_lay_out(term, instance, room);
+    bool fine = find_scales(&x, instance, s);
+    for (size_t i = 0; fine && i < sizeof powers / sizeof *powers; i++) {
+        spread(&x, powers[i], &random);
+        take_values(&x, distance);
+        memcpy(value, x.h, sizeof value);
+        turn_all(&x, instance, s);
+        take_values(&x, distance);
+        for (size_t lane = 0; lane < NEVH__LANES; lane++)
+            fine = fine && fabs(x.h[lane] - value[lane]) <=
+                               roundings * DBL_EPSILON * fabs(value[lane]);
+    }
+    return fine;
+}
+
 /* True if all instances are; false, too, if memory is out. */
 static bool is_pairs(const nevh__term_entry *term) {
     const nevh_term *decl = &term->decl;
@@ -368,24 +436,27 @@ static bool is_inner(const nevh_system *s, const nevh__term_entry *term) {
 
 int nevh__parts_find(const nevh_system *s, bool substeps,
                      nevh__part_role part[], nevh__parts_fault *fault) {
-    int status = NEVH_OK;
-    bool any = false;
+    bool any = false, *turn = nevh__array(s->n_terms, sizeof *turn);
+    int status = turn ? NEVH_OK : NEVH_ENOMEM;
     *fault = (nevh__parts_fault){NULL, NULL};
     for (size_t i = 0; !status && i < s->n_terms; i++)
         status = parts_choose(s, s->terms[i], &part[i]);
     if (!status)
         status = nevh__centres_choose(s, part);
+    if (!status)
+        status = nevh__turns_choose(s, part, turn);
     for (size_t i = 0; !status && i < s->n_terms; i++) {
         const nevh__term_entry *term = s->terms[i];
         any |= part[i] != NEVH__KICK;
         if (substeps && part[i] == NEVH__KICK && is_inner(s, term))
             part[i] = NEVH__INNER;
-        const char *reason = nevh__term_on(s, term)
+        const char *reason = nevh__term_on(s, term) && !turn[i]
                                  ? reason_of(s, term, substeps, part[i])
                                  : NULL;
         if (reason && !fault->term)
             *fault = (nevh__parts_fault){&term->decl, reason};
     }
+    free(turn);
     return status ? status : any && !fault->term ? NEVH_OK : NEVH_ESTRUCT;
 }
 

@@ -2,7 +2,9 @@
 
    A has the terms whose flow is known: quadratic forms of coordinates and momenta
    with constant coefficients, lower powers included, and -k/|q| of two or three
-   coordinates whose momenta have p^2/2m alone.  B = V(t, q) is the rest.
+   coordinates whose momenta have p^2/2m alone.  B = V(t, q) is the rest; of
+   oscillators whose coordinates it does not read otherwise, it may be a function of
+   their actions.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef NEVH_PARTS_PRIVATE_H
 #define NEVH_PARTS_PRIVATE_H
@@ -50,6 +52,15 @@ bool nevh__centre_find(const nevh__term_entry *, size_t instance, double *k,
 enum { NEVH__PLANE = 2, NEVH__PAIR = 2 * NEVH__SPACE };
 bool nevh__pair_find(const nevh__term_entry *, size_t instance, double *k,
                      size_t beside[NEVH__PAIR], double room[]);
+/* s of each coordinate of an instance that is a function of (s q^2 + p^2/s)/2 of each
+   alone; false: it is not.  s is 1 where the term brings no derivatives. */
+bool nevh__turn_find(const nevh__term_entry *, size_t instance, double s[],
+                     double room[]);
+/* Finds the terms of B that turn coordinates which no other term of B reads.
+   turn     out, one for each term
+   returns  NEVH_OK; NEVH_ENOMEM */
+int nevh__turns_choose(const nevh_system *, const nevh__part_role part[],
+                       bool turn[]);
 /* Leaves to B the centres whose coordinates are moved otherwise, too, and forms of q
    beside the others.
    part     in and out, one for each term

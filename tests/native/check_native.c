@@ -99,23 +99,25 @@ TEST_EACH(same_bits_of_lanes, WAYS) {
         assert_scene(i, _i, i % 2 ? 8 : 32, (i + (size_t)_i) % 4);
 }
 
-/* Of three kinds of flows, with kicks in between, and as they are planned alone and
+/* Of three kinds of flows, with kicks and turns in between, and as they are planned alone and
    side by side.  _i: substeps; of 0 nothing is inner. */
 TEST_EACH(parts_same_bits, 12) {
     static const size_t widths[] = {1, 8, 32};
     static const char text[] =
-        "[coordinates]\nx = 0.9\ny = 0.4\nz = 0.1\nr = 1.2\ns = 0.2\np_x = "
+        "[coordinates]\nx = 0.9\ny = 0.4\nz = 0.1\nr = 1.2\ns = 0.2\nu = 0.3\np_x = "
         "0.3\np_z = 0.2\np_s = 0.8\n"
         "[effects]\nkinetic = (p_x^2 + p_y^2/3 + p_z^2 + p_r^2 + p_s^2)/2\n"
         "spring = 2*(x - y)^2 + 0.1*x\ncentre = -1/sqrt(r^2 + s^2)\n"
         "bond = 20*(hypot(x, z) - 1)^2\n"
-        "slow = 0.1*x^4 + 0.2*cos(t + y)*r + z^2*s\n"
+        "slow = 0.1*x^4 + 0.2*cos(t + y)*r + z^2*s\n%s"
         "[parts]\nfast = kinetic, spring%s\n";
-    char all[sizeof text + 20];
+    static const char turn[] = "turn = 0.2*(u^2 + p_u^2)^2\n";
+    char all[sizeof text + sizeof turn + 20];
     if (!has_compiler())
         skip_test("there is no C compiler");
     share_cache();
-    snprintf(all, sizeof all, text, _i % 2 ? ", bond" : ", centre");
+    snprintf(all, sizeof all, text, _i % 3 ? turn : "",
+             _i % 2 ? ", bond" : ", centre");
     nevh_scene *scene = parsed(all);
     const nevh_integrator *schemes[] = {nevh_wisdom_holman, nevh_aba864};
     pair x = pair_of(scene, _i % 2 ? nevh_respa : schemes[_i / 2 % 2],

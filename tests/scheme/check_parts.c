@@ -385,6 +385,72 @@ TEST(form_of_values) {
     nevh_system_free(s);
 }
 
+static const char sites[] = "sites = (x^2 + p_x^2)/2 + 0.7*(4*y^2 + p_y^2) + "
+                            "0.2*(x*y + p_x*p_y)\n";
+
+static nevh_scene *lattice(const char *more) {
+    char text[400];
+    snprintf(text, sizeof text, "%s%s", sites, more);
+    return plane(text, "");
+}
+
+/* B that is a function of actions alone is turned: schemes have their order, and the orbit
+   is that of Gauss. */
+TEST_EACH(turns, 6) {
+    static const char *const turned[] = {
+        "b = 0.1*(x^2 + p_x^2)^2",
+        "b = 0.1*(x^2 + p_x^2)^2*sqrt(4*y^2 + p_y^2)",
+        "b = 0.1*sqrt(1 + (4*y^2 + p_y^2)/3)\nwave = 0.1*cos(x)",
+        "b = 0.1*exp(-(x^2 + p_x^2))\ndrive = 0.1*y*cos(0.7*t)",
+        "b = 0.1*(4*y^2 + p_y^2)^1.5\nwave = 0.1*sin(x)",
+        "b = 0.1*(9*x^2 + p_x^2/9)^2\nb2 = 0.1*sqrt(81*x^2 + p_x^2)"};
+    nevh_scene *s = lattice(turned[_i]);
+    const nevh_system *system = nevh_scene_system(s);
+    state start = fast_parts[0].start;
+    state exact = orbit_from(start, system, nevh_gauss20, 0.05, 40);
+    double off[2];
+    for (int i = 0; i < 2; i++)
+        off[i] = distance(exact, orbit_from(start, system, nevh_wisdom_holman,
+                                            0.02 / (i + 1), 100 * (i + 1)));
+    ck_assert_double_eq_tol(off[0] / off[1], 4, 0.05);
+    state by_parts = orbit_from(start, system, nevh_aba1064, 0.02, 100);
+    ck_assert_double_lt(distance(exact, by_parts), 1e-9 * off[0] / 1e-5);
+    nevh_scene_free(s);
+}
+
+/* A step of any length is exact where A keeps the actions, too, also from rest. */
+TEST(turns_are_exact) {
+    nevh_scene *s = plane("sites = (x^2 + p_x^2)/2 + (4*y^2 + p_y^2)/4\n"
+                          "b = (x^2 + p_x^2)^2*(1 + 4*y^2 + p_y^2)",
+                          "");
+    const nevh_system *system = nevh_scene_system(s);
+    state start = fast_parts[0].start, rest = {{0.8, 0, 0, 0}};
+    state exact = orbit_from(start, system, nevh_gauss20, 0.01, 70);
+    state one = orbit_from(start, system, nevh_saba2, 0.7, 1);
+    ck_assert_double_lt(distance(exact, one), 1e-12);
+    exact = orbit_from(rest, system, nevh_gauss20, 0.01, 70);
+    one = orbit_from(rest, system, nevh_saba2, 0.7, 1);
+    ck_assert_double_lt(distance(exact, one), 1e-12);
+    nevh_scene_free(s);
+}
+
+/* B that reads the coordinate otherwise, too, or another function of q and p. */
+TEST_EACH(turns_refused, 6) {
+    static const char *const wrong[] = {
+        "b = 0.1*(x^2 + p_x^2)^2\nwave = 0.1*cos(x + y)",
+        "b = 0.1*(x^2 + p_x^2)^2\nc = 0.1*(x^2 + 1.001*p_x^2)^2",
+        "b = 0.1*(x^2 + p_y^2)^2",
+        "b = 0.1*(x^2 + p_x^2)^2*(1 + 1e-9*x)",
+        "b = 0.1*(x^2 + p_x^2)^2*cos(t)",
+        "b = 0.1*(x^2 + p_x^2 + x*p_x)^2"};
+    nevh_scene *s = lattice(wrong[_i]);
+    nevh_stepper *stepper = stepper_of(nevh_scene_system(s), nevh_aba864);
+    ck_assert_int_eq(nevh_stepper_status(stepper), NEVH_ESTRUCT);
+    assert_says(nevh_stepper_message(stepper), "\"b\"");
+    nevh_stepper_free(stepper);
+    nevh_scene_free(s);
+}
+
 /* All vectors give the bits of plain sums, over the columns between the ends. */
 TEST_EACH(panels_have_the_bits_of_sums, 4) {
     static const size_t sizes[] = {8, 10, 32, 50};

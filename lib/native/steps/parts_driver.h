@@ -35,6 +35,9 @@ NEVH__INLINE int nevh__parts_slope(const nevh__parts_step *x, size_t size,
     } else if (o->kind == NEVH__OUTER_KICK) {
         *with->bad +=
             kick_slope(with->N, t, x->point[0], x->point[1], slope NEVH__WHOLE);
+        if (x->scheme->turn)
+            *with->bad += drift_slope(with->N, t, x->point[0], x->point[1],
+                                      x->turn NEVH__WHOLE);
         if (x->scheme->lessen)
             x->scheme->lessen(x->scheme->flow, NEVH__ROW,
                               (const double *)x->point[0], (double *)slope);
@@ -42,6 +45,14 @@ NEVH__INLINE int nevh__parts_slope(const nevh__parts_step *x, size_t size,
         *with->bad += inner_slope(with->N, t, x->point[0], x->point[1],
                                   slope NEVH__WHOLE);
     return 0;
+}
+
+NEVH__INLINE void nevh__parts_turn(const nevh__parts_step *x, double weight) {
+    x->scheme->turn(x->scheme->turns, NEVH__ROW, weight,
+                    (const double *)x->point[0], (const double *)x->point[1],
+                    (const double *)x->slope[NEVH__OUTER_KICK],
+                    (const double *)x->turn, (double *)x->change[0],
+                    (double *)x->change[1]);
 }
 
 NEVH__INLINE int nevh__parts_flow(const nevh__parts_step *x,
@@ -53,7 +64,7 @@ NEVH__INLINE int nevh__parts_flow(const nevh__parts_step *x,
     return 0;
 }
 
-enum { KEPT = KEPT_ROWS * DOF, NEVH__PART_ROWS = 6 };
+enum { KEPT = KEPT_ROWS * DOF, NEVH__PART_ROWS = 7 };
 NEVH__INLINE nevh__parts_step step_of(const nevh__steps_call *c, double t,
                                       const nevh__number *y,
                                       const nevh__number *lost,
@@ -67,6 +78,7 @@ NEVH__INLINE nevh__parts_step step_of(const nevh__steps_call *c, double t,
                               .change = {rows, rows + DOF},
                               .point = {rows + 2 * DOF, rows + 3 * DOF},
                               .slope = {rows + 4 * DOF, rows + 5 * DOF},
+                              .turn = rows + 6 * DOF,
                               .owner = owner};
 }
 
