@@ -149,7 +149,9 @@ typedef struct {
    OPEN where the energies met grow a hundredfold, or fourfold and steadily,
                  and the error no faster than they: UNDECIDED, for it grows with
                  the motion
-   max > limit   UNSTABLE for theory LOSES, or beyond all measure; else, once
+   max > limit   UNDECIDED for theory LOSES where the energies met grow a
+                 hundredfold, faster than any drift, and the error is below 10 % of
+                 them; else UNSTABLE for it, or beyond all measure; else, once
                  times >= 16, BOUNDED where the error comes back and is level,
                  UNDECIDED where a drive of OPEN has brought more energy than
                  the error and relative to that it is level, else UNSTABLE
@@ -211,8 +213,9 @@ typedef struct {
    longer run says nothing of a run whose errors are below 1 % of the limit, or, if
    H depends on time, of one that met a quarter of its energies: the verdict is
    UNDECIDED.  It is also UNDECIDED if errors of the latter grow no faster than the
-   energies.  Errors of the run itself that rounding explains stay BOUNDED, and so
-   do level errors of an orbit that `stop` ends at energies four times as large.
+   energies.  What theory LOSES leaves UNDECIDED above the limit stays so, for a longer
+   run tells no more.  Errors of the run itself that rounding explains stay BOUNDED, and
+   so do level errors of an orbit that `stop` ends at energies four times as large.
    stepper  as it took the run, of width 1; begins afresh
    energy   as of the run (nevh_energy_expect, nevh_energy_follow), but new
    report   in and out: nevh_energy_result of the run; of the longer one, whose

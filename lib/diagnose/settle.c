@@ -278,6 +278,10 @@ int nevh_verdict_settle(nevh_stepper *s, nevh_energy *energy,
     bool level = report->verdict == NEVH_BOUNDED;
     if (report->scale > 0 && report->scale < DBL_MIN)
         return NEVH_OK; /* of H below the least normal number no run tells */
+    if (report->theory == NEVH_THEORY_LOSES &&
+        report->verdict == NEVH_UNDECIDED &&
+        !(report->max <= fmax(report->limit, report->rounding)))
+        return NEVH_OK; /* carried along by a motion that grows, ever more so */
     double enough = confirming(r);
     double times = fmax(enough, lengths(r));
     if (level ? enough < least : report->verdict != NEVH_UNDECIDED)

@@ -60,6 +60,17 @@ static bool is_carried(const nevh_energy_report *r) {
            after <= fmin(growth_allowed * before, small);
 }
 
+/* The same of a scheme that loses energy: the energies met grow faster than any drift
+   does, and the error is a small part of them. */
+static bool is_outgrown(const nevh_energy_report *r) {
+    static const double much = 100, part = 0.1;
+    double grown = fmin(r->grown, DBL_MAX);
+    double slowest = fmin(r->rate[0], fmin(r->rate[1], r->rate[2]));
+    return r->theory == NEVH_THEORY_LOSES && grown > much &&
+           r->last_fifth > sqrt(grown) * r->first_fifth && slowest > no_walk &&
+           r->relative[1] <= part;
+}
+
 /* Above the energies at the start, but level relative to those that a drive has brought
    since. */
 static bool is_driven_there(const nevh_energy_report *r) {
@@ -80,6 +91,8 @@ static nevh_verdict judge_large(const nevh_energy_report *r, double times) {
     static const double hopeless = 1e6, much = 10;
     bool returns = r->least <= lasting * r->max;
     bool huge = r->max > much * r->limit;
+    if (is_outgrown(r))
+        return NEVH_UNDECIDED;
     if (!(r->max <= hopeless * r->limit) || r->theory == NEVH_THEORY_LOSES)
         return NEVH_UNSTABLE;
     if (times < (huge ? 2 * lasted : lasted))

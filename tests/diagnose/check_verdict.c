@@ -138,6 +138,31 @@ TEST(growth_of_the_motion) {
     ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, INFINITY), NEVH_UNDECIDED);
 }
 
+/* Energies that a drive raises beyond all drift, and a small part of them lost; not
+   where the loss is the growth, nor after one close encounter. */
+TEST(loss_of_a_motion_that_grows) {
+    const nevh_energy_report grows = {.samples = 1000,
+                                      .max = 1e8,
+                                      .first_fifth = 1e-3,
+                                      .last_fifth = 1e8,
+                                      .limit = 1,
+                                      .met = 1e14,
+                                      .rate = {40, 45, 50},
+                                      .early = 1e-3,
+                                      .grown = 1e10,
+                                      .relative = {1e-7, 1e-6}};
+    nevh_energy_report r = grows;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_LOSES, 1), NEVH_UNDECIDED);
+    r.relative[1] = 0.9;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_LOSES, 1), NEVH_UNSTABLE);
+    r = grows;
+    r.rate[2] = 0.1;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_LOSES, 1), NEVH_UNSTABLE);
+    r = grows;
+    r.grown = 1;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_LOSES, 1), NEVH_UNSTABLE);
+}
+
 /* A resonance, whose energies grow with the square of the time, and the error with
    them or faster; and energies that grow unsteadily. */
 TEST(resonance) {

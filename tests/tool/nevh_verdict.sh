@@ -375,4 +375,9 @@ lacks 'energy drifts|too short|The verdict on its'
 exits 0 recommend pendulum --energy-error 1e-3 --integrators rk4
 has 'Its energy drifts'
 has 'the shortest period of the orbit, at t = [1-9]'
+# A motion that a drive makes grow, beside which the loss of rk4 is small, and one that
+# euler makes grow.
+scene 'x = 1' 'K = p_x^2/2\nV = (1 - 0.2*cos(2*t))*x^2/2' 't_end = 400\ndt = 0.05' raised
+compares $work/raised.nevh --integrators rk4,euler
+verdicts rk4=undecided euler=unstable
 exit $status

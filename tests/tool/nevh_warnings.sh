@@ -97,4 +97,13 @@ has '^# Warning: dt = 0\.1 s is too long for verlet: shaking changes .* 0\.63 st
 exits 0 check kapitza --t-end 20 --dt 0.001 --integrators verlet --format csv
 lacks '^# Warning'
 
+# A resonance, whose energies grow by many powers of ten: errors there are small beside
+# them.  Contrast: steps that are long for the drive.
+printf '[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = (1 - 0.2*cos(2*t))*x^2/2\n[run]
+t_end = 300\ndt = 0.05\nintegrators = verlet, gauss4\n' >$work/mathieu.nevh
+exits 0 check $work/mathieu.nevh --gradient exact --format csv
+lacks '^# Warning'
+exits 0 check $work/mathieu.nevh --gradient exact --dt 1.5 --format csv
+has '^# Warning: dt = 1\.5 is too long for verlet, gauss4: V changes with time'
+
 exit $status

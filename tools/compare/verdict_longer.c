@@ -55,7 +55,8 @@ static void open_run_words(const plan *p, const row *r, const char *subject,
 /* The error grows because the motion does. */
 static bool is_carried(const row *r, const nevh_energy_report *e) {
     static const double more = 4;
-    return e->theory == NEVH_THEORY_OPEN && e->relative[1] <= 1 &&
+    bool loses = e->theory == NEVH_THEORY_LOSES && e->max > e->limit;
+    return (e->theory == NEVH_THEORY_OPEN || loses) && e->relative[1] <= 1 &&
            (e->grown > more || e->met > more * r->energy.met);
 }
 

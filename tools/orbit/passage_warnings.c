@@ -19,7 +19,24 @@ typedef struct {
     nevh_stepper *orbit; /* for the way to a first state */
     double scale;        /* of the energy */
     double *z;           /* 2n */
+    double *reached; /* for each place: the largest |H| of those until then */
 } passages;
+
+/* The energies are those of the start, and these 0, where no drive changes H. */
+static void find_reached(passages *w) {
+    const trial_run *ahead = w->ahead;
+    w->reached = tool_allocate(ahead->places, sizeof *w->reached);
+    nevh_field *field = plan_values(w->plan);
+    for (size_t k = 0; w->plan->time && k < ahead->places; k++) {
+        const trial_place *at = &ahead->place[k];
+        double h = 0;
+        nevh_field_value(field, 1, &at->t, at->z, at->z + w->plan->n, &h);
+        for (size_t i = 0; i < ahead->places; i++)
+            if (ahead->place[i].t >= at->t && isfinite(h))
+                w->reached[i] = fmax(w->reached[i], fabs(h));
+    }
+    nevh_field_free(field);
+}
 
 /* The state half the steps before the last place, at a whole number of steps from the
    start, as the run has it; other places as they are.
@@ -53,7 +70,7 @@ static double error_at(const passages *w, const row *r, double dt, double reach,
     size_t steps = (size_t)fmax(0, floor(left / dt * (1 + 1e-9)));
     nevh_stepper *s = row_stepper(p, r, p->balance);
     nevh_energy *energy = row_energy(p, r, s);
-    nevh_energy_set_scale(energy, w->scale);
+    nevh_energy_set_scale(energy, fmax(w->scale, w->reached[place]));
     int status = nevh_stepper_status(s);
     if (!status && steps > 0) {
         status = nevh_run(s, t, dt, steps, q, m,
@@ -170,6 +187,7 @@ static void warn_of(const plan *p, const trial_run *ahead, const row rows[],
                   .scale = plan_energy_scale(p),
                   .z = tool_allocate(2 * p->n, sizeof *w.z)};
     bool known = !nevh_stepper_status(w.orbit) && !ahead->failure;
+    find_reached(&w);
     for (size_t i = 0; known && i < count; i++) {
         if (i > 0 && rows[i].group == rows[i - 1].group)
             continue;
