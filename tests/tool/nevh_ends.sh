@@ -32,7 +32,12 @@ for name in fall:5.15195 quartic:0.92703 flow:2 centre:0.70710; do
     tells "$at" chaos $file --t-end 6
     tells "$at" frequencies $file
     tells "$at" section $file
+    tells "$at" flow $file
 done
+# Up to a time before the end the orbit has a size; a curve of which points end earlier.
+exits 0 flow $work/fall.nevh --t-end 3 --format csv
+tells 'a point of the curve failed before t = 6: from there the solution itself ends at t = 4.9' \
+    flow $work/fall.nevh --t-end 6 --shape 'disc(x = -1, p_x = 0, 0.1)'
 # The first of the members that fail.
 tells 'the first, member 0: the solution itself ends at t = 5.15195' \
     sweep $work/fall.nevh --vary 'p_x = range(0, 0.1, 3)'

@@ -90,6 +90,34 @@ static nevh_loop *new_loop(flow_job *j, const flow_row *r, int eye,
     return tool_owned(nevh_loop_new(p->system, scheme, &o, &is));
 }
 
+/* The first time that the curve has not reached. */
+static double failed_before(const flow_job *j, const flow_row *r) {
+    size_t i = 0;
+    while (i + 1 < j->times && !isnan(nevh_loop_result(r->loop, i).area))
+        i++;
+    return j->time[i];
+}
+
+/* Why the row failed: the message, or that the solution ends before, by the first of
+   some points of the curve. */
+static char *why_of(flow_job *j, const flow_row *r) {
+    enum { POINTS = 8 };
+    const plan *p = &j->plan;
+    const char *message = nevh_loop_message(r->loop);
+    double *q = tool_allocate(2 * p->n, sizeof *q), first = INFINITY,
+           end = failed_before(j, r);
+    for (size_t i = 0; i < POINTS; i++) {
+        const double at = (double)i / POINTS;
+        if (!shape_curve(&j->shape, 1, &at, q, q + p->n))
+            first = fmin(first, nevh_solution_ends(p->system, p->run->t_start,
+                                                   end, q, q + p->n));
+    }
+    char *ends = ends_text(p, first);
+    return ends ? text_print("%.*s: from there %s", (int)strcspn(message, ":"),
+                             message, ends)
+                : text_print("%s", message);
+}
+
 /* returns  TOOL_OK, TOOL_FAILED where a step failed, or TOOL_USAGE */
 static int run_row(flow_job *j, flow_row *r, const options *o) {
     bool shapes = plot_wanted(o);
@@ -112,7 +140,7 @@ static int run_row(flow_job *j, flow_row *r, const options *o) {
     }
     if (!status)
         return TOOL_OK;
-    r->status = text_print("failed: %s", nevh_loop_message(r->loop));
+    r->status = text_print("failed: %s", why_of(j, r));
     tool_refuse("%s: %s at dt = %.4g %s", j->plan.name, r->integrator, r->dt,
                 r->status);
     return TOOL_FAILED;
@@ -342,7 +370,7 @@ static int flow(const options *o) {
         status = plot_check(o);
     if (!status)
         status = run_rows(&j, o);
-    if (status != TOOL_USAGE)
+    if (status != TOOL_USAGE && j.shape.text)
         status = show(&j, o, status);
     forget(&j);
     return status;

@@ -349,12 +349,27 @@ static nevh_stepper *plan_symplectic(const plan *p) {
     return plan_stepper(p, "gauss4");
 }
 
-/* As far as the orbit can be followed. */
-static int measure(const plan *p, nevh_stepper *s, extent *e) {
+/* Along so many steps, or as far as the orbit can be followed. */
+static int follow(const plan *p, nevh_stepper *s, size_t steps, extent *e) {
     double *q = plan_state(p), *m = q + p->n;
     nevh_observer observer = {widen, e, 1};
-    int status =
-        nevh_run(s, p->run->t_start, p->dt[0], 1000, q, m, &observer, 1);
+    for (size_t k = 0; k < 2 * e->n; k++) {
+        e->low[k] = INFINITY;
+        e->high[k] = -INFINITY;
+        e->longest[k] = 0;
+    }
+    nevh_stepper_reset(s);
+    return nevh_run(s, p->run->t_start, p->dt[0], steps, q, m, &observer, 1);
+}
+
+/* An orbit that ends has no size, but up to the end of the run if that is before. */
+static int measure(const plan *p, nevh_stepper *s, extent *e) {
+    int status = follow(p, s, 1000, e);
+    if (status && plan_refuse_end(p))
+        return TOOL_FAILED;
+    double steps = floor((p->t_end - p->run->t_start) / p->dt[0]);
+    if (status && steps >= 1 && steps < 1000)
+        status = follow(p, s, (size_t)steps, e);
     if (status && !moves(e))
         status = tool_refuse("%s: the orbit fails, so that no shape follows "
                              "from it: %s",
@@ -426,10 +441,6 @@ static int choose(shape *c) {
         return TOOL_USAGE;
     double *room = tool_allocate(8 * p->n, sizeof *room);
     extent e = {p->n, room, room + 2 * p->n, room + 4 * p->n, room + 6 * p->n};
-    for (size_t k = 0; k < 2 * p->n; k++) {
-        e.low[k] = INFINITY;
-        e.high[k] = -INFINITY;
-    }
     int status = measure(p, s, &e);
     if (!status)
         status = choose_plane(c, &e);
