@@ -366,12 +366,27 @@ static bool is_limit(search *s) {
     return moved && same;
 }
 
+/* Moves each momentum far off from the best ones, either way: that of a velocity that
+   comes close to a limit may be 0 there.  Squares do not overflow. */
+static void look_far_off(search *s) {
+    for (int power = 40; power >= 0; power -= 10)
+        for (size_t j = 0; j < 2 * s->rows; j++) {
+            double far_off = fmin(ldexp(s->unit[j / 2], power), 0x1p500);
+            set_momenta(s, s->best, 1);
+            s->p[s->row[j / 2]] += j % 2 ? -far_off : far_off;
+            momenta_measure(s);
+        }
+}
+
 static size_t farthest_off(search *s) {
     size_t most = 0;
     for (int power = 40; power >= 0; power -= 10) {
         set_momenta(s, s->best, ldexp(1, power)); /* closer to a limit */
         momenta_measure(s);
     }
+    look_far_off(s);
+    set_momenta(s, s->best, 1);
+    momenta_measure(s);
     for (size_t j = 1; j < s->rows; j++)
         if (fabs(offset(s, j)) > fabs(offset(s, most)))
             most = j;

@@ -106,6 +106,12 @@ static const struct {
 } impossible[] = {
     {"sqrt(1 + p_x^2)", {1.5}, 1, "v_x comes no closer to 1.5 than 1"},
     {"sqrt(1 + p_x^2)", {1}, 1, "a limit"},
+    {"sqrt(1 + (p_x + 8)^2)", {1.2}, 1, "v_x comes no closer to 1.2 than 1"},
+    {"sqrt(1 + (p_x - 8)^2)", {-1.2}, 1, "v_x comes no closer to -1.2 than -1"},
+    {"sqrt(1 + (p_x + 8)^2 + p_y^2)",
+     {1.2, 0},
+     2,
+     "v_x comes no closer to 1.2 than 1"},
     {"sqrt(1 + p_x^2 + p_y^2)", {0.8, -0.6}, 2, ""},
     {"sqrt(1 + (p_x + 8)^2)", {-1}, 1, "a limit"},
     {"p_x^2/(2*(x - 1))", {2}, 1, "effect \"H\" has no finite derivatives"},
