@@ -11,7 +11,8 @@
    are dp and p, in that order, with H = dq dH/dq + dp dH/dp. */
 typedef struct {
     nevh_system *system;
-    void **tapes; /* of terms that are formulas; NULL of others */
+    const char **names; /* of its coordinates; NULL: the system has none */
+    void **tapes;       /* of terms that are formulas; NULL of others */
     size_t count;
 } nevh__variational;
 /* scale    in, 2n lengths over which H varies, coordinates first

@@ -234,11 +234,23 @@ static int variational_add_friction(nevh__variational *v,
     return status;
 }
 
+/* A displacement has the name of its variable.  False when memory is out. */
+static bool variational_name(nevh__variational *v, const nevh_system *s) {
+    if (!s->names)
+        return true;
+    v->names = nevh__array(2 * s->n, sizeof *v->names);
+    for (size_t k = 0; v->names && k < 2 * s->n; k++)
+        v->names[k] = s->names[k % s->n];
+    v->system->names = v->names;
+    return v->names;
+}
+
 static int variational_fill(nevh__variational *v, const nevh_system *s,
                             const double scale[], nevh__report *report) {
     v->system = nevh_system_new(2 * s->n);
     v->tapes = nevh__array(s->n_terms, sizeof *v->tapes);
-    int status = v->system && v->tapes ? NEVH_OK : NEVH_ENOMEM;
+    int status =
+        v->system && v->tapes && variational_name(v, s) ? NEVH_OK : NEVH_ENOMEM;
     for (size_t i = 0; !status && i < s->n_terms; i++)
         if (nevh__term_on(s, s->terms[i]) &&
             s->terms[i]->decl.nq + s->terms[i]->decl.np)
@@ -267,6 +279,7 @@ void nevh__variational_free(nevh__variational *v) {
     if (!v)
         return;
     nevh_system_free(v->system);
+    free(v->names);
     for (size_t i = 0; i < v->count; i++)
         nevh__tape_free(v->tapes[i]);
     free(v->tapes);

@@ -149,7 +149,7 @@ static int give_up(const nevh__stage_solver *s, size_t lane) {
     if (r && r->residual == INFINITY && r->status)
         return r->status; /* G could not be evaluated at all */
     char which[40] = "";
-    if (s->work->width > 1)
+    if (s->work->width > 1 && !s->work->system->names)
         snprintf(which, sizeof which, " (lane %zu)", lane);
     return nevh_work_fail(
         s->work, NEVH_EMAXITER,

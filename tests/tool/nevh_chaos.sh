@@ -188,4 +188,12 @@ exits 0 chaos $work/late.nevh --format csv
 holds '$6 > 0.05 && $10 == "unresolved"'
 exits 0 chaos $work/late.nevh --integrators gauss4 --t-end 20000 --format csv
 holds 'abs($6 + 0.042) < 2*$7 && $10 == "regular"'
+# Steps of several orbits side by side that fail name no lane.
+printf '[coordinates]\nx = 0.1\ny = 0.2, 0.3\n[effects]\nK = (p_x^2 + p_y^2)/2
+R = p_x*y - p_y*x\nV = -x^2 + y^2/2 - 1/hypot(x, y)\n[run]\nt_end = 1\ndt = 0.001
+integrators = gauss4\n' >$work/hill.nevh
+exits 1 chaos $work/hill.nevh
+says 'stage equations of gauss4 were not solved'
+lacks 'lane'
+grep -q 'lane' $work/err && fails "names a lane"
 exit $status

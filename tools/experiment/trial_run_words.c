@@ -112,7 +112,7 @@ static void gradient_notes(const plan *p, const trial_run *f, list *notes) {
     if (f->wrong > much && !f->rough)
         list_print(notes,
                    "Gradient: %s errs by %.1e of the largest derivative (t = "
-                   "%.4g%s): %s; --gradient exact does not err.",
+                   "%.4g%s): %s; --gradient exact takes no differences.",
                    name, f->wrong, f->wrong_at, p->unit,
                    f->rounded ? "its steps are so short that the rounding of H "
                                 "counts"
