@@ -170,8 +170,7 @@ int nevh__central_fail(nevh_field *f, nevh__planned *term, const nevh__block *b,
         "the derivative of term \"%s\" of effect \"%s\" with respect to "
         "%s is not finite at %s = %.9g%s: its step of %g is lost in a "
         "value too large, or too small for the values of H, which may jump "
-        "there; take a smaller "
-        "step, or give a gradient step",
+        "there; take a smaller step, a gradient step or the exact gradient",
         decl->name, decl->effect, name, name, z[index * b->width + lane], when,
         term->delta[instance * term->nv + k]);
 }

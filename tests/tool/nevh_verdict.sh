@@ -380,4 +380,14 @@ has 'the shortest period of the orbit, at t = [1-9]'
 scene 'x = 1' 'K = p_x^2/2\nV = (1 - 0.2*cos(2*t))*x^2/2' 't_end = 400\ndt = 0.05' raised
 compares $work/raised.nevh --integrators rk4,euler
 verdicts rk4=undecided euler=unstable
+
+# Losses of a close encounter, at a time when steps are short beside most of the orbit, are
+# not those of each step; contrast: those of euler.
+scene 'x = 0.4, -0.8660254\ny = 0.8660254, 0.4' 'K = (p_x^2 + p_y^2)/2\nR = p_x*y - p_y*x
+V = -0.9/hypot(x + 0.1, y) - 0.1/hypot(x - 0.9, y)' 't_end = 200\ndt = 0.01' trojan
+exits 0 compare $work/trojan.nevh --integrators rk4
+has '^rk4 is unstable'
+lacks 'soon large'
+exits 0 compare $work/trojan.nevh --integrators euler
+has 'soon large'
 exit $status

@@ -51,23 +51,32 @@ bool stability_exceeded(const nevh_integrator *scheme, double limit, double x) {
     return x > (extended ? limit - 1. / 32 : limit);
 }
 
+/* True if the losses of so many steps, each below x^(order + 1), may add up to a part of
+   the energy; what is lost in a few steps of a close encounter is another thing. */
+static bool losses_add_up(const nevh_integrator *scheme, double x,
+                          double steps) {
+    static const double part = 0.01;
+    return nevh_integrator_symplectic(scheme) == NEVH_NO &&
+           steps * pow(x, nevh_integrator_order(scheme) + 1) > part;
+}
+
 static char *cause_at(const nevh_integrator *scheme, double limit, double x,
-                      const char *where) {
+                      double steps, const char *where) {
     const char *name = nevh_integrator_name(scheme);
-    bool adds_up = nevh_integrator_symplectic(scheme) == NEVH_NO;
     if (limit > 0 && stability_exceeded(scheme, limit, x))
         return text_print("%s: %s is stable up to %.3g", where, name, limit);
     if (x > 1)
         return text_print("%s: a turn has %.2g steps", where, 2 * M_PI / x);
-    return adds_up ? text_print("each step changes the energy a little, in one "
-                                "direction; with omega dt = %.3g that is soon "
-                                "large",
-                                x)
-                   : NULL;
+    return losses_add_up(scheme, x, steps)
+               ? text_print("each step changes the energy a little, in one "
+                            "direction; with omega dt = %.3g that is soon "
+                            "large",
+                            x)
+               : NULL;
 }
 
 char *stability_cause(const nevh_integrator *scheme, double limit, double dt,
-                      const largest_rates *fastest) {
+                      double span, const largest_rates *fastest) {
     double w = fastest->frequency, x = fabs(dt) * w;
     const char *turn = resonance(scheme, x);
     if (!(x > 0) || !isfinite(x))
@@ -76,7 +85,7 @@ char *stability_cause(const nevh_integrator *scheme, double limit, double dt,
         text_print("omega dt = %.3g near t = %.4g, where the orbit is "
                    "fastest (omega = %.3g)",
                    x, fastest->frequency_at, w);
-    char *text = cause_at(scheme, limit, x, where);
+    char *text = cause_at(scheme, limit, x, span / fabs(dt), where);
     if (turn && (x <= limit))
         text_extend(&text, "%s%s%s steps make a turn: a resonance",
                     text ? "" : where, text ? "; " : ": ", turn);
@@ -149,7 +158,8 @@ static char *cause_of(const plan *p, const row *r) {
                                             r->energy.scale, r->dt, p->t_end);
     double limit = nevh_stability_limit(r->scheme);
     double x = fabs(r->dt) * fastest.frequency;
-    char *cause = stability_cause(r->scheme, limit, r->dt, &fastest);
+    char *cause = stability_cause(r->scheme, limit, r->dt,
+                                  p->t_end - p->run->t_start, &fastest);
     if (cause && p->friction && x <= 1 &&
         !stability_exceeded(r->scheme, limit, x))
         text_extend(&cause, ", or dt is too long for a rate of friction");

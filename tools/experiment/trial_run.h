@@ -25,9 +25,10 @@ largest_rates stability_rates(const nevh_system *, const nevh_integrator *,
                               double t_end);
 /* True if h w = x is beyond that limit of stability of the scheme. */
 bool stability_exceeded(const nevh_integrator *, double limit, double x);
-/* The likely cause of trouble at these rates; NULL where none is known. */
+/* The likely cause of trouble at these rates, in a run as long as `span`; NULL where
+   none is known. */
 char *stability_cause(const nevh_integrator *, double limit, double dt,
-                      const largest_rates *);
+                      double span, const largest_rates *);
 /* The same of each unstable row of compare. */
 void stability_words(const plan *, const row rows[], size_t count, list *words);
 
