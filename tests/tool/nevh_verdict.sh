@@ -390,4 +390,14 @@ has '^rk4 is unstable'
 lacks 'soon large'
 exits 0 compare $work/trojan.nevh --integrators euler
 has 'soon large'
+
+# A fall for ever: level in the run alone, and the verdict is said to be of no other run.
+# Contrast: a driven pendulum, whose verdict is of the longer run.
+scene 'x = 2' 'K = p_x^2/2\nV = max(x - 2, 0)^2*50 + 9.8*x' 't_end = 3\ndt = 0.01' falls
+exits 0 compare $work/falls.nevh --integrators verlet
+has 'when the run is continued'
+lacks 'too short to judge'
+scene 'x = 1' 'K = p_x^2/2\nV = -cos(x) - 1.1*x*cos(0.67*t)' 't_end = 225\ndt = 0.1' swings
+exits 0 compare $work/swings.nevh --integrators gauss4
+has 'too short to judge gauss4'
 exit $status

@@ -150,6 +150,14 @@ void verdict_larger_words(const plan *p, const row rows[], size_t count,
     }
 }
 
+/* True if the errors are level in the run and no longer where it is continued: the
+   verdict is then that of the run. */
+static bool is_of_run(const row *r) {
+    bool beyond =
+        r->longer.max > r->longer.limit && r->energy.max <= r->energy.limit;
+    return verdict_is(r, NEVH_BOUNDED) && (beyond || verdict_leaves(r));
+}
+
 /* Which verdicts are not from the run alone. */
 void verdict_followed_words(const plan *p, const row rows[], size_t count,
                             list *words) {
@@ -159,7 +167,7 @@ void verdict_followed_words(const plan *p, const row rows[], size_t count,
         const row *r = &rows[i];
         bool clear = r->energy.max > r->energy.limit;
         if (r->followed <= 0 || !r->open || verdict_is(r, NEVH_UNDECIDED) ||
-            (clear && verdict_is(r, NEVH_UNSTABLE)))
+            is_of_run(r) || (clear && verdict_is(r, NEVH_UNSTABLE)))
             continue;
         most = fmax(most, rows[i].followed);
         if (!list_has(&names, rows[i].integrator))
