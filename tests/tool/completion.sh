@@ -127,5 +127,7 @@ offers names folders "$real" run x -o ''
 tr , ';' <names >listed
 offers listed . "$work/nevh" compare x --integrators ''
 offers listed . "$work/nevh" compare x --gradient ''
+echo >none # what is typed is no program either
+offers none . "$real" run '--x//;e touch X;s/' x
 offers last . "$work/nevh" compare x --integrators x,a
 exit $status
