@@ -411,9 +411,10 @@ char *nevh__new_folder(void) {
 void nevh__folder_remove(const char *folder) {
     DIR *all = opendir(folder);
     for (struct dirent *file; all && (file = readdir(all));) {
-        char *path = nevh__text("%s/%s", folder, file->d_name);
-        if (path)
-            unlink(path); /* no folder is: not . and .. either */
+        bool own = strcmp(file->d_name, ".") && strcmp(file->d_name, "..");
+        char *path = own ? nevh__text("%s/%s", folder, file->d_name) : NULL;
+        if (path && unlink(path) && (errno == EISDIR || errno == EPERM))
+            nevh__folder_remove(path); /* a compiler made it */
         free(path);
     }
     if (all)

@@ -4,6 +4,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "elementary/elementary_list.h"
 #include "native/writer_private.h"
+#include <float.h>
 #include <nevh/simd.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -164,6 +165,8 @@ void nevh__write_prelude(nevh__writer *text) {
     int together = (int)nevh__orbits_together(text);
     if (together < NEVH__LANES)
         nevh__write_form(&all, "NEVH__FOUR_TOGETHER");
+    if (FLT_EVAL_METHOD == 0)
+        nevh__write_form(&all, "NEVH__PLAIN_DOUBLES");
     nevh__write_lines(&all, nevh__compiled_formulas_text);
     nevh__write_lines(&all, nevh__formula_needs_text);
     if (lanes == 8)

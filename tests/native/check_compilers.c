@@ -105,6 +105,8 @@ static const struct {
     {"while test \"$1\" != -o; do shift; done; echo 'int x;' >\"$2.c\"\n"
      "exec $C_COMPILER -shared -fPIC -o \"$2\" \"$2.c\"",
      "has no steps"},
+    {"while test \"$1\" != -o; do shift; done; mkdir -p \"$2/folder\"",
+     "steps.so"},
 };
 enum { COMPILERS = sizeof compilers / sizeof *compilers };
 

@@ -8,6 +8,10 @@ typedef __UINT64_TYPE__ uint64_t;
 typedef __UINT32_TYPE__ uint32_t;
 _Static_assert(sizeof(double) == sizeof 1.0 && sizeof(size) == sizeof(void *),
                "double or size_t is another type in CC");
+#ifdef NEVH__PLAIN_DOUBLES /* sums and products of nevh are no longer than doubles */
+_Static_assert(__FLT_EVAL_METHOD__ >= 0 && __FLT_EVAL_METHOD__ != 2,
+               "CC computes in another precision than nevh");
+#endif
 #define INLINE       static inline __attribute__((always_inline, unused))
 #define NEVH__INLINE INLINE
 #define SLOPE        INLINE
