@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import concurrent.futures
+import contextlib
 import csv
 import html
 import io
@@ -14,6 +15,7 @@ import itertools
 import json
 import os
 import re
+import shutil
 import sys
 import unicodedata
 
@@ -65,9 +67,7 @@ class Room:
 def write_notebook(sheet, path, asked=()):
     """A sheet as a notebook."""
     cells = text.cells_of(sheet.title, sheet.body, sheet.source, asked)
-    with open(path, "w", encoding="utf-8") as file:
-        json.dump(text.notebook(cells), file, indent=1, ensure_ascii=False)
-        file.write("\n")
+    write(path, json.dumps(text.notebook(cells), indent=1, ensure_ascii=False) + "\n")
 
 
 def file_name(name):
@@ -148,8 +148,24 @@ def by_all(function, things):
 
 
 def write(path, made):
-    with open(path, "w", encoding="utf-8", newline="") as file:
-        file.write(made)
+    """A file under another name until it is whole; a device or a pipe as it is."""
+    real = os.path.realpath(path)
+    old = os.path.isfile(real)
+    begun = "%s.%d" % (real, os.getpid()) if old or not os.path.exists(real) else real
+    try:
+        with open(begun, "w", encoding="utf-8", newline="") as file:
+            file.write(made)
+        if old:
+            shutil.copymode(real, begun)
+        if begun != real:
+            os.replace(begun, real)
+    except BaseException as error:
+        if begun != real:
+            with contextlib.suppress(OSError):
+                os.remove(begun)
+        if isinstance(error, OSError):
+            raise Error("%s cannot be written: %s" % (path, error.strerror)) from None
+        raise
 
 
 def page_of(room, sheet, name):
@@ -355,7 +371,8 @@ def main(arguments):
         else:
             sys.stdout.write(made)
     except OSError as error:
-        sys.stderr.write("nevh: %s: %s\n" % (error.filename, error.strerror))
+        sys.stderr.write("nevh: %s: %s\n" % (error.filename or "the output cannot be written",
+                                             error.strerror))
         return 2
     except UnicodeDecodeError:
         sys.stderr.write("nevh: a file that was given is no text in UTF-8\n")

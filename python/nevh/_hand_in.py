@@ -12,6 +12,8 @@ import io
 import math
 import os
 import re
+import select
+import stat
 import sys
 import unicodedata
 
@@ -142,13 +144,26 @@ def typed(text, unit=""):
 # Tables.
 
 
+def bytes_of(path, longest=10, most=1 << 26):
+    """The bytes of a file, not too many; a pipe that nobody writes to is not waited for
+    without end."""
+    if path == "-":
+        return sys.stdin.buffer.read()
+    with open(path, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK)
+              ) as file:
+        if stat.S_ISFIFO(os.fstat(file.fileno()).st_mode) and \
+                not select.select([file], [], [], longest)[0]:
+            raise Error("%s: nothing was written to this pipe for %g s" % (path, longest))
+        os.set_blocking(file.fileno(), True)
+        data = file.read(most + 1)
+    if len(data) > most:
+        raise Error("%s is too large: it has more than %d MB" % (path, most >> 20))
+    return data
+
+
 def text_of(path):
     """The text of a file in the encodings that spreadsheets write."""
-    if path == "-":
-        data = sys.stdin.buffer.read()
-    else:
-        with open(path, "rb") as file:
-            data = file.read()
+    data = bytes_of(path)
     if data[:2] == b"PK":
         raise Error("%s is a file of a spreadsheet; save it as CSV" % path)
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
@@ -161,9 +176,10 @@ def text_of(path):
         return data.decode("cp1252", "replace")
 
 
-def rows_of(path):
-    """(line, cells) of a CSV with , or ; or tabs; the first is the head."""
-    text = re.sub(r"^\s*(?:sep=(.)\r?\n)?\s*", "", text_of(path))
+def rows_of(path, text=None):
+    """(line, cells) of a CSV with , or ; or tabs; the first is the head.  A pipe gives its
+    text once."""
+    text = re.sub(r"^\s*(?:sep=(.)\r?\n)?\s*", "", text_of(path) if text is None else text)
     if not text:
         raise Error("%s is empty" % path)
     mark = max(",;\t", key=text.splitlines()[0].count)
@@ -312,17 +328,18 @@ def _with_names(made, listed, faults):
 
 def names_of(given):
     """The names: of a file with one a line or a column of names, or the name itself."""
-    if not os.path.isfile(given):
+    if not os.path.exists(given) or os.path.isdir(given):
         if "/" in given or given.endswith((".txt", ".csv")):
             raise Error("there is no file %s with names, one a line" % given)
         if not plain(given):
             raise Error("--for takes a name, or a file of names")
         return [given]
-    listed = [" ".join(line.split()) for line in text_of(given).splitlines()]
+    whole = text_of(given)
+    listed = [" ".join(line.split()) for line in whole.splitlines()]
     listed = [name for name in listed if name and name[0] != "#"]
     if not listed:
         raise Error("%s has no names, one a line" % given)
-    rows = [row for _, row in rows_of(given)]
+    rows = [row for _, row in rows_of(given, whole)]
     if _naming(rows[0]):
         listed = [" ".join(row[k] for k in _naming(rows[0]) if k < len(row) and row[k])
                   for row in rows[1:]]

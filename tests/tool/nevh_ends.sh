@@ -157,6 +157,10 @@ mkfifo $work/pipe 2>/dev/null && {
     exits 0 check $work/pipe
     limit="${limit:+timeout 60}"
     tells 'nothing was written to this pipe' check $work/pipe
+    # So are measured points.
+    cat "$srcdir/scenes/pendulum-filmed.csv" >$work/pipe &
+    exits 0 fit pendulum-filmed --data $work/pipe --vary l
+    tells 'nothing was written to this pipe' fit pendulum-filmed --data $work/pipe --vary l
 }
 
 # Words of CC that make double another type.
@@ -168,4 +172,8 @@ for words in -Ddouble=float '-Ddouble=long\ double' -D__SIZE_TYPE__=char; do
     has '^native: no steps are compiled'
     unset CC
 done
+# Sums that are longer than doubles; steps of these schemes agree with others to the end.
+CC='cc -mfpmath=387' XDG_CACHE_HOME=$work/cache exits 0 compare double-pendulum --t-end 2 \
+    --native always --repeat 1
+has '^native: no steps are compiled'
 exit $status

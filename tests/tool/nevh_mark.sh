@@ -105,6 +105,31 @@ printf 'PK\003\004' >$work/book.xlsx
 exits 2 mark $work/book.xlsx
 says 'save it as CSV'
 
+# Pipes give names and answers; those that nobody writes to, and devices, have an end.
+mkfifo $work/pipe && {
+    printf 'name\nAda Lovelace\n' >$work/pipe &
+    exits 0 sheet 8 --for $work/pipe --key 7 --as form
+    has '^Ada Lovelace'
+    cat $work/twice.csv >$work/pipe &
+    exits 0 mark $work/pipe --key 7
+    limit="${limit:+timeout 60}"
+    exits 2 mark $work/pipe
+    says 'nothing was written to this pipe'
+}
+exits 2 mark /dev/zero
+says 'too large'
+# A file that cannot be written whole is as it was.
+echo kept >$work/form.csv
+seq 100 | sed 's/^/Somebody with a name of some length /' >$work/many
+(
+    ulimit -f 1
+    exits 2 sheet 8 --for $work/many --key 7 --as form -o $work/form.csv
+    says 'form.csv cannot be written'
+    exit $status
+) || status=1
+test "$(cat $work/form.csv; ls $work | grep -c 'form.csv.')" = "kept
+0" || fails "leaves a part of a file"
+
 # Without a key all have the usual sheet; a sheet for a name needs one.
 usual=$("$nevh" sheet 8 --answers --format csv | sed -n 2p | cut -d, -f3)
 printf 'name,task,answer\nAda Lovelace,8.1,%s\nJosé Núñez,8.1,%s\n' $usual $usual >$work/usual.csv

@@ -2,9 +2,13 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measured.h"
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 enum { NOT_USED = -1, TIME = -2, SIGMA = -3, SIGMA_OF_ONE = -4 };
 enum { MOST_BYTES = 1 << 28 };
@@ -22,10 +26,30 @@ typedef struct {
 
 /* Text. */
 
+/* NULL with errno; as a scene, a pipe is not waited for without end. */
+static FILE *open_data(const char *file) {
+    enum { LONGEST = 10000 }; /* milliseconds */
+    int opened = open(file, O_RDONLY | O_NONBLOCK | O_CLOEXEC), ready = 1;
+    struct pollfd one = {.fd = opened, .events = POLLIN};
+    struct stat found;
+    if (opened >= 0 && fstat(opened, &found) == 0 && S_ISFIFO(found.st_mode))
+        ready = poll(&one, 1, LONGEST);
+    if (opened < 0)
+        return NULL;
+    if (ready > 0 && fcntl(opened, F_SETFL, O_RDONLY) == 0)
+        return fdopen(opened, "r");
+    close(opened);
+    errno = ready ? errno : ETIMEDOUT;
+    return NULL;
+}
+
 static char *whole_file(const char *name) {
     char *file = data_file(name);
-    FILE *f = fopen(file, "re");
-    const char *why = f ? NULL : strerror(errno);
+    FILE *f = open_data(file);
+    const char *why = f                    ? NULL
+                      : errno == ETIMEDOUT ? "nothing was written to this "
+                                             "pipe for 10 s"
+                                           : strerror(errno);
     size_t room = 1 << 16, used = 0;
     char *text = tool_allocate(room, 1);
     for (size_t got;
