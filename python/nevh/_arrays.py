@@ -49,7 +49,8 @@ def _numbers(values, what="the array"):
 def _real(what, value):
     """A number as a float: of Python or NumPy, no text."""
     try:
-        if isinstance(value, (str, bytes)) or getattr(value, "ndim", 0):
+        if isinstance(value, (str, bytes)) or getattr(value, "ndim", 0) or \
+                (np is not None and np.ma.is_masked(value)):
             raise TypeError
         return float(value)
     except (TypeError, ValueError, OverflowError):

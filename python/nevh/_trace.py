@@ -94,8 +94,10 @@ class Calls:
 def as_number(x):
     """What a function returned, as a float: arrays of one number are one."""
     try:
+        if np is not None and np.ma.is_masked(x):
+            raise TypeError
         return float(x.item() if hasattr(x, "dtype") and x.size == 1 else x)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise TypeError("H returns %.80r, which is no real number" % (x,)) from None
 
 

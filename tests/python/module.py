@@ -451,6 +451,11 @@ def test_masked_values():
     start = numpy.ma.masked_array([2.0, 0.0], [False, True])
     raised(nevh.Refused, "masked", lambda: nevh.solve(PENDULUM, (0, 1), start, "verlet",
                                                      dt=0.1))
+    raised(nevh.Refused, "masked", lambda: nevh.solve(
+        PENDULUM + "*k", (0, 1), [2, 0], "verlet", dt=0.1, parameters={"k": numpy.ma.masked}))
+    for value in numpy.ma.masked, 10**400:
+        raised(TypeError, "no real number", lambda v=value: nevh.solve(
+            lambda t, q, p: v, (0, 1), [2, 0], "midpoint", dt=0.1))
 
 
 def test_names():
