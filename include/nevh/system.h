@@ -205,6 +205,12 @@ NEVH_API int nevh_system_set_speed(nevh_system *, const char *effect,
 NEVH_API int nevh_system_parts(const nevh_system *, const char *effect,
                                size_t *fast, size_t *slow, const char **term);
 
+/* The parts of all effects, as of nevh_system_parts, at the cost of one.
+   fast, slow  out, a number for each effect; 0 of those that are off
+   returns     as nevh_system_parts */
+NEVH_API int nevh_system_effect_parts(const nevh_system *, size_t fast[],
+                                      size_t slow[]);
+
 /* The separability that values of H alone show. */
 typedef struct {
     bool separable;

@@ -460,40 +460,51 @@ int nevh__parts_find(const nevh_system *s, bool substeps,
     return status ? status : any && !fault->term ? NEVH_OK : NEVH_ESTRUCT;
 }
 
-/* Instances of an effect's terms that are on, among the fast and among others; false:
-   there is no such effect. */
-static bool parts_count(const nevh_system *s, const char *effect,
-                        const nevh__part_role part[], size_t counts[2]) {
-    bool known = false;
-    for (size_t i = 0; effect && i < s->n_effects; i++)
-        known |= strcmp(s->effects[i].name, effect) == 0;
-    for (size_t i = 0; known && i < s->n_terms; i++) {
-        const nevh_term *decl = &s->terms[i]->decl;
-        if (nevh__term_on(s, s->terms[i]) && strcmp(decl->effect, effect) == 0)
-            counts[part[i] == NEVH__KICK] += decl->count;
+/* Instances of each effect's terms that are on, among the fast and among others. */
+static int parts_count(const nevh_system *s, size_t fast[], size_t slow[],
+                       nevh__parts_fault *fault) {
+    nevh__part_role *all = nevh__array(s->n_terms, sizeof *all);
+    int status = all ? nevh__parts_find(s, false, all, fault) : NEVH_ENOMEM;
+    for (size_t i = 0; i < s->n_effects; i++)
+        fast[i] = slow[i] = 0;
+    for (size_t i = 0; status != NEVH_ENOMEM && i < s->n_terms; i++) {
+        const nevh__term_entry *term = s->terms[i];
+        size_t *counts = all[i] == NEVH__KICK ? slow : fast;
+        if (nevh__term_on(s, term))
+            counts[term->effect] += term->decl.count;
     }
-    return known;
+    free(all);
+    return status;
+}
+
+int nevh_system_effect_parts(const nevh_system *s, size_t fast[],
+                             size_t slow[]) {
+    nevh__parts_fault fault = {NULL, NULL};
+    int status = nevh_system_status(s);
+    if (!status && (!fast || !slow))
+        return NEVH_EINVAL;
+    return status ? status : parts_count(s, fast, slow, &fault);
 }
 
 int nevh_system_parts(const nevh_system *s, const char *effect, size_t *fast,
                       size_t *slow, const char **term) {
     nevh__parts_fault fault = {NULL, NULL};
-    size_t counts[2] = {0, 0};
     int status = nevh_system_status(s);
     if (status)
         return status;
-    nevh__part_role *all = nevh__array(s->n_terms, sizeof *all);
-    bool known = false;
-    status = all ? nevh__parts_find(s, false, all, &fault) : NEVH_ENOMEM;
-    if (status != NEVH_ENOMEM) {
-        known = parts_count(s, effect, all, counts);
-        if (term)
-            *term = fault.term ? fault.term->name : NULL;
-    }
+    size_t *counts = nevh__array(2 * s->n_effects, sizeof *counts), at = 0;
+    status = counts ? parts_count(s, counts, counts + s->n_effects, &fault)
+                    : NEVH_ENOMEM;
+    while (at < s->n_effects &&
+           (!effect || strcmp(s->effects[at].name, effect) != 0))
+        at++;
+    bool known = status != NEVH_ENOMEM && at < s->n_effects;
     if (fast)
-        *fast = counts[0];
+        *fast = known ? counts[at] : 0;
     if (slow)
-        *slow = counts[1];
-    free(all);
+        *slow = known ? counts[s->n_effects + at] : 0;
+    if (term && status != NEVH_ENOMEM)
+        *term = fault.term ? fault.term->name : NULL;
+    free(counts);
     return status == NEVH_ENOMEM || known ? status : NEVH_EINVAL;
 }

@@ -291,6 +291,7 @@ static nevh_separability separability;
     X(STATUS, nevh_system_enable, (NULL, "x", true))                           \
     X(STATUS, nevh_system_set_speed, (NULL, "x", NEVH_SLOW))                   \
     X(STATUS, nevh_system_parts, (NULL, "x", NULL, NULL, NULL))                \
+    X(STATUS, nevh_system_effect_parts, (NULL, NULL, NULL))                    \
     X(STATUS, nevh_system_status, (NULL))                                      \
     X(TEXT, nevh_system_message, (NULL))                                       \
     X(NUMBER, nevh_system_dof, (NULL))                                         \

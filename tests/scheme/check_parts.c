@@ -322,6 +322,16 @@ TEST(speeds) {
     ck_assert(fast == 2 && slow == 0);
     ck_assert(!nevh_system_parts(some, "spring", &fast, &slow, NULL));
     ck_assert(fast == 0 && slow == 2);
+    /* All effects at once have what each has. */
+    size_t all_fast[3], all_slow[3];
+    ck_assert_int_eq(nevh_system_effect_parts(some, all_fast, all_slow),
+                     NEVH_OK);
+    for (size_t i = 0; i < 3; i++) {
+        ck_assert(!nevh_system_parts(some, nevh_system_effect_name(some, i),
+                                     &fast, &slow, NULL));
+        ck_assert(all_fast[i] == fast && all_slow[i] == slow);
+    }
+    ck_assert(all_fast[0] > 0 && all_slow[1] == 2 && all_slow[2] > 0);
     nevh_scene_free(found);
     nevh_scene_free(said);
 }

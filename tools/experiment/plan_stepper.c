@@ -34,15 +34,13 @@ static bool are_pairs_all(const plan *p) {
 }
 
 bool plan_parts_are_all(const plan *p) {
-    size_t fast = 0, slow = 0, found = 0;
-    for (size_t i = 0; i < nevh_system_effect_count(p->system); i++) {
-        if (nevh_system_parts(p->system, nevh_system_effect_name(p->system, i),
-                              &fast, &slow, NULL) ||
-            slow)
-            return are_pairs_all(p);
-        found += fast;
-    }
-    return found > 0;
+    size_t count = nevh_system_effect_count(p->system), kicks = 0;
+    size_t *fast = tool_allocate(2 * count, sizeof *fast);
+    bool fits = !nevh_system_effect_parts(p->system, fast, fast + count);
+    for (size_t i = 0; i < count; i++)
+        kicks += fast[count + i];
+    tool_release(fast);
+    return (fits && !kicks) || are_pairs_all(p);
 }
 
 bool plan_is_exact(const plan *p, const nevh_integrator *scheme) {

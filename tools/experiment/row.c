@@ -7,7 +7,8 @@
 #include <string.h>
 #include <time.h>
 
-nevh_energy *row_energy(const plan *p, const row *r, const nevh_stepper *s) {
+nevh_energy *row_energy_unscaled(const plan *p, const row *r,
+                                 const nevh_stepper *s) {
     nevh_options o = plan_options(p, r->gradient);
     nevh_energy *energy = nevh_energy_new(p->system, &o);
     nevh_energy_expect(energy, s);
@@ -16,6 +17,11 @@ nevh_energy *row_energy(const plan *p, const row *r, const nevh_stepper *s) {
     if (p->balance && p->timing)
         nevh_energy_book(energy,
                          nevh_timing_whole(p->jumps) ? p->jumps : p->timing);
+    return energy;
+}
+
+nevh_energy *row_energy(const plan *p, const row *r, const nevh_stepper *s) {
+    nevh_energy *energy = row_energy_unscaled(p, r, s);
     plan_set_scale(p, energy);
     return energy;
 }

@@ -62,6 +62,9 @@ typedef struct {
 row_list rows_of(const plan *);
 /* Creates the observer of the energy of a row's run. */
 nevh_energy *row_energy(const plan *, const row *, const nevh_stepper *);
+/* The same, for a caller that sets its scale, which takes an orbit to find. */
+nevh_energy *row_energy_unscaled(const plan *, const row *,
+                                 const nevh_stepper *);
 /* follow.c: where the run leaves the verdict open, from a longer one, as far as
    the budget goes. */
 void row_follow(const plan *, row *);

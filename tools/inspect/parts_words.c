@@ -71,10 +71,13 @@ static double ratio_along(const plan *p, nevh_stepper *s) {
 }
 
 static void name_parts(const plan *p, list *fast, list *slow) {
-    for (size_t i = 0; i < nevh_system_effect_count(p->system); i++) {
+    size_t count = nevh_system_effect_count(p->system);
+    size_t *fast_of = tool_allocate(2 * count, sizeof *fast_of);
+    size_t *slow_of = fast_of + count;
+    nevh_system_effect_parts(p->system, fast_of, slow_of);
+    for (size_t i = 0; i < count; i++) {
         const char *name = nevh_system_effect_name(p->system, i);
-        size_t forms = 0, others = 0;
-        nevh_system_parts(p->system, name, &forms, &others, NULL);
+        size_t forms = fast_of[i], others = slow_of[i];
         if (forms)
             list_print(fast, others ? "%s (%zu of %zu terms)" : "%s", name,
                        forms, forms + others);

@@ -69,7 +69,7 @@ static double error_at(const passages *w, const row *r, double dt, double reach,
     double left = fmin(reach, end - t), *q = w->z, *m = w->z + p->n;
     size_t steps = (size_t)fmax(0, floor(left / dt * (1 + 1e-9)));
     nevh_stepper *s = row_stepper(p, r, p->balance);
-    nevh_energy *energy = row_energy(p, r, s);
+    nevh_energy *energy = row_energy_unscaled(p, r, s);
     nevh_energy_set_scale(energy, fmax(w->scale, w->reached[place]));
     int status = nevh_stepper_status(s);
     if (!status && steps > 0) {

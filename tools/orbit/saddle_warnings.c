@@ -152,12 +152,24 @@ static void look_along(survey *s, int way) {
     }
 }
 
+/* Saddles are looked for in a whole plane, which takes long where H has many terms. */
+static bool has_many_terms(const plan *p) {
+    enum { MOST = 300 };
+    size_t effects = nevh_system_effect_count(p->system), instances = 0;
+    size_t *parts = tool_allocate(2 * effects, sizeof *parts);
+    nevh_system_effect_parts(p->system, parts, parts + effects);
+    for (size_t i = 0; i < 2 * effects; i++)
+        instances += parts[i];
+    tool_release(parts);
+    return instances > MOST;
+}
+
 static bool has_saddles(survey *s) {
     const plan *p = s->plan;
     unsigned traits = nevh_system_traits(p->system);
     s->period = p->n == 1 ? nevh_scene_period(p->scene, 0) : 0;
     if (p->n != 1 || p->time || p->friction || !(traits & NEVH_SEPARABLE) ||
-        !p->dts || !span_orbit(s) || !find_equilibria(s))
+        !p->dts || has_many_terms(p) || !span_orbit(s) || !find_equilibria(s))
         return false;
     look_along(s, -1);
     look_along(s, 1);
