@@ -18,6 +18,7 @@ libnevh_core_la_SOURCES = \
 	lib/system/probe.c \
 	lib/system/masses.c \
 	lib/system/parts_private.h \
+	lib/system/part_kinds.c \
 	lib/system/parts.c \
 	lib/system/centres.c \
 	lib/system/turns.c \
