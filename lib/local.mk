@@ -18,6 +18,8 @@ libnevh_core_la_SOURCES = \
 	lib/system/probe.c \
 	lib/system/masses.c \
 	lib/system/parts_private.h \
+	lib/system/forest_private.h \
+	lib/system/components.c \
 	lib/system/part_kinds.c \
 	lib/system/parts.c \
 	lib/system/centres.c \

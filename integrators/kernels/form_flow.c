@@ -9,6 +9,7 @@
 #include "form_flow_private.h"
 #include "form_block_private.h"
 #include "hierarchy_private.h"
+#include "system/forest_private.h"
 #include "system/parts_private.h"
 #include <tgmath.h>
 #include <stdlib.h>
@@ -107,20 +108,12 @@ typedef struct {
     size_t n, *up;
 } forest;
 
-static size_t root(const forest *x, size_t i) {
-    while (x->up[i] != i)
-        i = x->up[i] = x->up[x->up[i]];
-    return i;
-}
-
 static void connect(void *data, size_t row, size_t column, double value) {
-    forest *x = data;
+    const forest *x = data;
     bool central = column > 2 * x->n;
-    if (!central && (value == 0 || column == 2 * x->n))
-        return;
-    size_t i = root(x, row % x->n);
-    size_t j = root(x, (central ? column - 1 : column) % x->n);
-    x->up[i > j ? i : j] = i > j ? j : i;
+    if (central || (value != 0 && column != 2 * x->n))
+        nevh__forest_join(x->up, row % x->n,
+                          (central ? column - 1 : column) % x->n);
 }
 
 /* Places of coordinates: `block` of each, and which of its coordinates it is. */
@@ -166,13 +159,13 @@ static void choose_units(block *b) {
 static bool plan_blocks(nevh__form_flow *f, map *x, const forest *trees) {
     size_t elements = 0, most = 0;
     for (size_t k = 0; k < f->n; k++)
-        if (root(trees, k) == k)
+        if (nevh__forest_root(trees->up, k) == k)
             x->block[k] = f->n_blocks++;
     f->blocks = nevh__array(f->n_blocks, sizeof *f->blocks);
     if (!f->blocks)
         return false;
     for (size_t k = 0; k < f->n; k++) {
-        x->block[k] = x->block[root(trees, k)];
+        x->block[k] = x->block[nevh__forest_root(trees->up, k)];
         x->place[k] = f->blocks[x->block[k]].count++;
     }
     const size_t *index = f->index;

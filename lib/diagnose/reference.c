@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/kinks_private.h"
 #include "diagnose/reference_private.h"
+#include "system/forest_private.h"
 #include <fenv.h>
 #include <float.h>
 #include <math.h>
@@ -30,21 +31,28 @@ static void reference_share(size_t n, const size_t kind[], double scale[]) {
         scale[k] = scale[kind[k]];
 }
 
-/* Scales of the coordinates, or of the momenta. */
+/* Scales of the coordinates, or of the momenta.  What varies by rounding alone beside
+   those that terms connect it to has the scale of these. */
 static void scale_half(const nevh_reference *r, const double low[],
                        const double high[], double scale[]) {
     static const double rounding = 1e-12; /* of the largest value */
-    double widest = 0, largest = 0;
+    double widest = 0, *near = r->beside, *largest = near + r->n;
+    for (size_t k = 0; k < r->n; k++)
+        near[k] = largest[k] = 0;
     for (size_t k = 0; k < r->n; k++) {
-        largest = fmax(largest, fmax(fabs(low[k]), fabs(high[k])));
+        size_t c = r->component[k];
+        largest[c] = fmax(largest[c], fmax(fabs(low[k]), fabs(high[k])));
         scale[k] = high[k] - low[k];
+        near[c] = fmax(near[c], scale[k]);
         widest = fmax(widest, scale[k]);
     }
     if (r->kind)
         reference_share(r->n, r->kind, scale);
-    for (size_t k = 0; k < r->n; k++)
-        if (scale[k] <= rounding * largest)
-            scale[k] = widest > 0 ? widest : 1;
+    for (size_t k = 0; k < r->n; k++) {
+        size_t c = r->component[k];
+        if (scale[k] <= rounding * largest[c])
+            scale[k] = near[c] > 0 ? near[c] : widest > 0 ? widest : 1;
+    }
 }
 
 void nevh__reference_scale(const nevh_reference *r, const double low[],
@@ -302,15 +310,17 @@ static int reference_make(nevh_reference *r) {
 static bool reference_allocate(nevh_reference *r, const double q[],
                                const double p[]) {
     size_t n = r->n;
-    r->start = nevh__array(12 * n, sizeof *r->start);
+    r->start = nevh__array(14 * n, sizeof *r->start);
     r->state = nevh__array(2 * n, sizeof *r->state);
-    if (!r->start || !r->state)
+    r->component = nevh__components(r->system);
+    if (!r->start || !r->state || !r->component)
         return false;
     r->low = r->start + 2 * n;
     r->high = r->low + 2 * n;
     r->range = r->high + 2 * n;
     r->walked = r->range + 2 * n;
     r->found = r->walked + 2 * n;
+    r->beside = r->found + 2 * n;
     memcpy(r->start, q, n * sizeof *q);
     memcpy(r->start + n, p, n * sizeof *p);
     memcpy(r->low, r->start, 2 * n * sizeof *q);
@@ -388,6 +398,7 @@ void nevh_reference_free(nevh_reference *r) {
     free(r->start);
     free(r->state);
     free(r->kind);
+    free(r->component);
     free(r);
 }
 

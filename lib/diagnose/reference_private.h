@@ -40,6 +40,8 @@ struct nevh_reference {
     struct nevh__reference_series *series; /* NULL: a run of another kind */
     const nevh_integrator *integrator;
     size_t *kind; /* n: the first variable of the same kind; NULL: all differ */
+    size_t *component; /* n, of nevh__components */
+    double *beside;    /* 2n: room for scales */
     nevh__reference_orbit orbit;
     nevh__memo memo;
     /* From the last checkpoint on, and from there to times between steps. */

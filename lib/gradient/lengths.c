@@ -286,13 +286,15 @@ static double lengths_size_of(const double x[], size_t n, size_t i) {
 static double first_guess(const nevh__step_selection *e, size_t i) {
     size_t n = e->field->n;
     const nevh__samples *s = &e->samples;
+    bool sized = e->sizes && !isnan(e->sizes[i]);
     double x = e->options->scale ? e->options->scale[i]
-               : e->sizes        ? e->sizes[i]
+               : sized           ? e->sizes[i]
                : i < n           ? lengths_size_of(s->q + e->at * n, n, i)
                                  : lengths_size_of(s->p + e->at * n, n, i - n);
     return x > 0 && isfinite(x) ? exp2(floor(log2(x))) : 1;
 }
 
+/* energy: that of the variable's component */
 typedef void (*visit_fn)(nevh__step_selection *, const nevh__planned *,
                          size_t instance, size_t k, size_t i, double *energy);
 
@@ -305,7 +307,8 @@ static void visit_all(nevh__step_selection *e, visit_fn visit, double *energy) {
                 size_t i = nevh__index(term, instance, k);
                 if (nevh__probed(term, k) == k)
                     visit(e, term, instance, k,
-                          k < term->nq ? i : e->field->n + i, energy);
+                          k < term->nq ? i : e->field->n + i,
+                          energy + e->component[i]);
             }
     }
 }
@@ -355,37 +358,58 @@ static void find_from_rest(nevh__step_selection *e, const nevh__planned *term,
     *energy = fmax(*energy, isfinite(whole) ? whole : 0);
 }
 
-/* True where H is quadratic in each variable at the end of the orbit, too. */
-static bool is_straight_later(nevh__step_selection *e) {
-    double energy = 0;
+/* Numbers of each component, n each: the largest variations of H. */
+typedef struct {
+    double *energy; /* within lengths, or 0; then those that are decided for */
+    double *other;  /* of momenta, and of other terms within the lengths */
+    double *along;  /* over sizes of the orbit */
+    double *later;  /* within lengths at its end */
+    bool *curved;   /* some variable has a length */
+    bool *taken;    /* sizes of the orbit are */
+} variations;
+
+/* Within lengths at the end of the orbit: 0 where H is quadratic in each variable. */
+static bool find_later(nevh__step_selection *e, double later[]) {
     size_t bytes = 2 * e->field->n * sizeof *e->length;
     double *lengths = nevh__copy(e->length, 2 * e->field->n, sizeof *lengths);
     if (!lengths)
         return false;
     e->at = e->samples.most;
     e->samples.t[e->at] = e->samples.t[0];
-    visit_all(e, find_curved, &energy);
+    visit_all(e, find_curved, later);
     e->at = 0;
     memcpy(e->length, lengths, bytes);
     free(lengths);
-    return energy == 0;
+    return true;
 }
 
-/* The sizes of the orbit from the start, where these are far beyond those that the
-   start has: then H varies there by much more.  Returns them, to be freed. */
-static double *look_along_orbit(nevh__step_selection *e, double *energy) {
-    double *sizes = nevh__array(2 * e->field->n, sizeof *sizes), along = 0;
-    bool any = *energy == 0;
-    bool found = sizes && nevh__sizes_from_start(e, any, sizes);
-    e->sizes = found ? sizes : NULL;
-    visit_all(e, find_from_rest, &along);
+/* Sizes of the orbit from the start are taken where these are far beyond those that the
+   start has: then H varies there by much more.  NAN: they are not. */
+static bool look_along_orbit(nevh__step_selection *e, variations *v,
+                             double sizes[]) {
+    size_t n = e->field->n;
     double none = nevh__has_gradients(e->field) ? as_at_rest : 0;
+    bool any = false, less = false, taken = false;
+    for (size_t k = 0; k < n; k++)
+        any |= !v->curved[e->component[k]] && v->energy[e->component[k]] == 0;
+    bool found = nevh__sizes_from_start(e, any, sizes);
     double little = found ? far_less : none;
-    if (any || (*energy < little * along && (!found || is_straight_later(e))))
-        *energy = along;
-    else
-        e->sizes = NULL;
-    return sizes;
+    e->sizes = found ? sizes : NULL;
+    visit_all(e, find_from_rest, v->along);
+    for (size_t c = 0; c < n; c++)
+        less |= !v->curved[c] && v->energy[c] < little * v->along[c];
+    if (found && less && !find_later(e, v->later))
+        return false;
+    for (size_t c = 0; c < n; c++) {
+        bool far = v->later[c] == 0 && v->energy[c] < little * v->along[c];
+        v->taken[c] = !v->curved[c] && (v->energy[c] == 0 || far);
+        v->energy[c] = v->taken[c] ? v->along[c] : v->energy[c];
+        taken |= v->taken[c];
+    }
+    for (size_t i = 0; i < 2 * n; i++)
+        sizes[i] = v->taken[e->component[i % n]] ? sizes[i] : NAN;
+    e->sizes = taken && found ? sizes : NULL;
+    return true;
 }
 
 /* The same of momenta alone. */
@@ -458,29 +482,54 @@ bool nevh__keep_lengths(const nevh__step_selection *e) {
     return f->length;
 }
 
-void nevh__find_lengths(nevh__step_selection *e) {
-    double energy = 0, other = 0, last = 1, *sizes = NULL;
+/* Energies by which components vary; sizes: room, 2n. */
+static bool find_energies(nevh__step_selection *e, variations *v,
+                          double sizes[]) {
+    size_t n = e->field->n, curved = 0, first = 0;
+    find_over_lanes(e, v->energy);
+    for (size_t c = 0; c < n; c++) {
+        first += e->component[c] == c;
+        curved += e->component[c] == c && v->energy[c] > 0;
+        v->curved[c] = v->energy[c] > 0;
+    }
+    if (curved) {
+        visit_all(e, find_kinetic, v->other);
+        visit_all(e, find_within, v->other);
+    }
+    if (curved < first)
+        visit_all(e, find_energy, v->along);
+    for (size_t c = 0; c < n; c++) {
+        if (!v->curved[c])
+            v->energy[c] = v->along[c];
+        else if (v->energy[c] < out_of_reach * v->other[c])
+            v->energy[c] = v->other[c];
+        v->along[c] = 0;
+    }
+    return curved == first || look_along_orbit(e, v, sizes);
+}
+
+bool nevh__find_lengths(nevh__step_selection *e) {
+    size_t n = e->field->n;
+    double last = 1;
     if (e->field->length) {
         lengths_load(e, 0, 0);
         e->lanes = e->samples.count = 1;
-        memcpy(e->length, e->field->length, 2 * e->field->n * sizeof(double));
-        return;
+        memcpy(e->length, e->field->length, 2 * n * sizeof(double));
+        return true;
     }
-    find_over_lanes(e, &energy);
-    if (energy == 0) {
-        visit_all(e, find_energy, &energy);
-        sizes = look_along_orbit(e, &energy);
-    } else {
-        visit_all(e, find_kinetic, &other);
-        visit_all(e, find_within, &other);
-    }
-    if (energy < out_of_reach * other)
-        energy = other;
-    visit_all(e, find_straight, &energy); /* kept apart by their sign */
+    double *room = nevh__array(6 * n, sizeof *room);
+    bool *flags = nevh__array(2 * n, sizeof *flags);
+    variations v = {room,         room + n, room + 2 * n,
+                    room + 3 * n, flags,    flags + n};
+    bool fine = room && flags && find_energies(e, &v, room + 4 * n);
+    if (fine)
+        visit_all(e, find_straight, v.energy); /* kept apart by their sign */
     e->sizes = NULL;
-    free(sizes);
-    for (size_t i = 0; i < 2 * e->field->n; i++) {
+    free(room);
+    free(flags);
+    for (size_t i = 0; fine && i < 2 * n; i++) {
         last = e->length[i] != 0 ? fabs(e->length[i]) : last;
         e->length[i] = e->options->scale ? e->options->scale[i] : last;
     }
+    return fine;
 }

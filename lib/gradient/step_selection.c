@@ -1,6 +1,7 @@
 /* nevh: a field looks around.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/step_selection_private.h"
+#include "system/forest_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -112,14 +113,16 @@ int nevh__step_selection_init(nevh__step_selection *e, nevh_field *f,
     e->samples.q = nevh__array((most + 1) * n, sizeof *e->samples.q);
     e->samples.p = nevh__array((most + 1) * n, sizeof *e->samples.p);
     e->samples.largest = nevh__array(2 * most * n, sizeof *e->samples.largest);
-    if (!e->length || !e->samples.q || !e->samples.p || !e->samples.largest)
+    e->component = nevh__components(f->system);
+    if (!e->length || !e->samples.q || !e->samples.p || !e->samples.largest ||
+        !e->component || !nevh__find_lengths(e))
         return nevh__no_memory(&f->report);
-    nevh__find_lengths(e);
     return NEVH_OK;
 }
 
 void nevh__step_selection_clear(nevh__step_selection *e) {
     free(e->length);
+    free(e->component);
     free(e->samples.q);
     free(e->samples.p);
     free(e->samples.largest);

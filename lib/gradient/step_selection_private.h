@@ -41,6 +41,9 @@ typedef struct {
     nevh_field *field;
     const nevh_options *options;
     double *length; /* 2n */
+    size_t
+        *component; /* of each coordinate, and its momentum: of those that terms
+                          connect; energies are looked for in each */
     nevh__samples samples;
     size_t lanes;        /* of them, given by the user: the first ones */
     size_t at;           /* the one whose lengths are looked for */
@@ -81,8 +84,8 @@ void nevh__step_selection_clear(nevh__step_selection *);
    quadratic as far as one can see, NAN where nothing is to be seen. */
 double nevh__curve_length(const nevh__axis *, double guess);
 /* Fills length with the shortest over the lanes, of which it makes those
-   samples that matter. */
-void nevh__find_lengths(nevh__step_selection *);
+   samples that matter; false: memory is out. */
+bool nevh__find_lengths(nevh__step_selection *);
 /* True if all terms bring gradients, so that their orbits can be followed. */
 bool nevh__has_gradients(const nevh_field *);
 /* The largest size that each variable reaches, 2n, on the orbit from the first

@@ -3,6 +3,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "support.h"
 #include <math.h>
+#include <nevh/reference.h>
 #include <nevh/scene.h>
 #include <stdio.h>
 
@@ -198,5 +199,46 @@ TEST_EACH(waves_of_any_length, WAVES) {
                               fabs(p[1][k] - p[0][k]) < 1e-9 / u,
                           "%s, u = %g: %.17g, %.17g for %.17g, %.17g",
                           waves[_i], u, q[1][k], p[1][k], q[0][k], p[0][k]);
+    }
+}
+
+/* Coordinates that no term connects, one far smaller than the other: both are moved as by
+   exact gradients, and each has its own range. */
+static const struct {
+    const char *start, *v;
+} apart[] = {
+    {"x = u\ny = 0.7", "x^2/2 + y^2/2"},
+    {"x = 0, u\ny = 0.7", "x^2/2 - x*u*cos(0.7*t) + y^4/4"},
+    {"x = 0\ny = 0", "x^2/2 - x*u*cos(0.7*t) + y^2/2 - y*cos(0.9*t)"},
+    {"x = u\ny = 0", "x^2/2 + y^2/2 - y*cos(0.9*t)"},
+    {"x = u\ny = 0, 1", "x^2/2 + 0.1*x^3/u - cos(y)"},
+};
+enum { APART = sizeof apart / sizeof *apart };
+
+TEST_EACH(uncoupled_coordinates_have_their_sizes, APART) {
+    static const double sizes[] = {1e-18, 1e-9, 1e12, 1e20};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        double q[2][2], p[2][2], u = sizes[i];
+        char text[400];
+        snprintf(text, sizeof text,
+                 "[parameters]\nu = %g\n[coordinates]\n%s\n[effects]\n"
+                 "K = (p_x^2 + p_y^2)/2\nV = %s\n",
+                 u, apart[_i].start, apart[_i].v);
+        take_steps(text, nevh_verlet, nevh_exact, 0.05, q[0], p[0]);
+        take_steps(text, nevh_verlet, nevh_central4, 0.05, q[1], p[1]);
+        for (int k = 0; k < 2; k++)
+            ck_assert_msg(fabs(q[1][k] - q[0][k]) < 1e-9 * (k ? 1 : u) &&
+                              fabs(p[1][k] - p[0][k]) < 1e-9 * (k ? 1 : u),
+                          "%s, u = %g: %.17g, %.17g for %.17g, %.17g",
+                          apart[_i].v, u, q[1][k], p[1][k], q[0][k], p[0][k]);
+        nevh_scene *scene = nevh_scene_parse("test", text);
+        double start[4];
+        nevh_scene_start(scene, start, start + 2);
+        nevh_reference *r = nevh_reference_new(nevh_scene_system(scene), NULL,
+                                               0, 10, start, start + 2);
+        ck_assert_double_lt(nevh_reference_range(r, 0), 10 * u);
+        ck_assert_double_gt(nevh_reference_range(r, 0), u / 5);
+        nevh_reference_free(r);
+        nevh_scene_free(scene);
     }
 }
