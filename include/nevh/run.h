@@ -160,7 +160,8 @@ NEVH_API nevh_field *nevh_stepper_field(nevh_stepper *);
    coordinates; they are found at the state to plan at.
    text     out: "((x[1], x[2]), x[3])" where x[2] moves about x[1] and x[3] about the
             centre of mass of both, by first coordinates; cut off at size; NULL if size
-            is 0
+            is 0.  Where there are no such pairs it is the reason why attractions stay
+            in B, or empty where there are none
    whole    out, or NULL: whether H has nothing else, so that steps are exact
    returns  the number of pairs; 0: there are none, or the scheme is another one */
 NEVH_API size_t nevh_stepper_hierarchy(const nevh_stepper *, char text[],

@@ -40,6 +40,7 @@ struct nevh__form_flow {
     size_t now; /* the set in use */
     nevh__panels_fn *multiply;
     nevh__hierarchy *bodies; /* that are moved together, or NULL */
+    const char *why;         /* attractions stay in B, or NULL */
 };
 
 void nevh__form_flow_free(nevh__form_flow *f) {
@@ -266,7 +267,7 @@ static int plan_bodies(nevh__form_flow *f, nevh_work *w) {
     int status =
         inverse_mass
             ? nevh__hierarchy_new(w->field, inverse_mass, w->options->q,
-                                  w->options->p, w->width, &f->bodies)
+                                  w->options->p, w->width, &f->bodies, &f->why)
             : NEVH_ENOMEM;
     free(inverse_mass);
     return status;
@@ -445,6 +446,10 @@ void nevh__form_flow_add(const nevh__form_flow *f, size_t which, size_t width,
 
 const nevh__hierarchy *nevh__form_flow_bodies(const nevh__form_flow *f) {
     return f->bodies;
+}
+
+const char *nevh__form_flow_why(const nevh__form_flow *f) {
+    return f->why;
 }
 
 void nevh__form_flow_lessen(const nevh__form_flow *f, size_t width,

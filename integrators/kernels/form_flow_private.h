@@ -51,6 +51,10 @@ void nevh__form_flow_add(const nevh__form_flow *, size_t which, size_t width,
                          double dp[]);
 /* The bodies that move about one another, or NULL. */
 const struct nevh__hierarchy *nevh__form_flow_bodies(const nevh__form_flow *);
+/* The reason why attractions stay in B, or NULL. */
+const char *nevh__form_flow_why(const nevh__form_flow *);
+/* The flow of a scheme by parts; NULL for other schemes. */
+const nevh__form_flow *nevh__parts_flow_of(const nevh_work *);
 /* The bodies of a scheme by parts; NULL, too, for other schemes. */
 const struct nevh__hierarchy *nevh__parts_hierarchy(const nevh_work *);
 /* Takes what A has of their attractions from a gradient with all of them. */

@@ -15,8 +15,9 @@ typedef struct {
     const double *inverse_mass;
     size_t *body; /* of each coordinate, and 1; 0: none */
     double k[MOST_BODIES][MOST_BODIES];
-    bool others; /* terms of B that are no pairs */
-    bool given;  /* an effect with such bodies is to be fast */
+    bool others;     /* terms of B that are no pairs */
+    bool given;      /* an effect with such bodies is to be fast */
+    const char *why; /* there is no hierarchy; NULL: nothing attracts */
 } finding;
 
 /* Up to rounding: of p_x^2/(2*m) + p_y^2/2/m, say. */
@@ -24,19 +25,32 @@ static bool is_same_mass(double a, double b) {
     return fabs(a - b) <= 4 * DBL_EPSILON * fabs(a);
 }
 
+/* NULL: the places are free and have one mass. */
+static const char *unfit(const finding *f, const size_t place[]) {
+    const double *inverse_mass = f->inverse_mass;
+    size_t space = f->h->space;
+    for (size_t k = 0; k < space; k++)
+        if (!(inverse_mass[place[k]] > 0))
+            return "other terms of A move their coordinates";
+    for (size_t k = 1; k < space; k++)
+        if (!is_same_mass(inverse_mass[place[k]], inverse_mass[place[0]]))
+            return "a body has other masses in other directions";
+    return NULL;
+}
+
 /* The body that has these coordinates, which is added if all of them are free;
    MOST_BODIES: there is none. */
 static size_t body_of(finding *f, const size_t place[]) {
     nevh__hierarchy *h = f->h;
     size_t is = f->body[place[0]];
-    for (size_t k = 0; k < h->space; k++)
-        if (f->body[place[k]] != is ||
-            (is && h->place[is - 1][k] != place[k]) ||
-            !(f->inverse_mass[place[k]] > 0) ||
-            !is_same_mass(f->inverse_mass[place[k]], f->inverse_mass[place[0]]))
-            return MOST_BODIES;
-    if (is || h->n_bodies == MOST_BODIES)
-        return is ? is - 1 : MOST_BODIES;
+    f->why = unfit(f, place);
+    for (size_t k = 0; !f->why && k < h->space; k++)
+        if (f->body[place[k]] != is || (is && h->place[is - 1][k] != place[k]))
+            f->why = "coordinates of bodies do not come in one order";
+    if (!f->why && !is && h->n_bodies == MOST_BODIES)
+        f->why = "there are more than 64 bodies";
+    if (f->why || is)
+        return f->why ? MOST_BODIES : is - 1;
     for (size_t k = 0; k < h->space; k++) {
         h->place[h->n_bodies][k] = place[k];
         f->body[place[k]] = h->n_bodies + 1;
@@ -62,11 +76,13 @@ static bool take_pair(finding *f, const nevh__planned *term, size_t instance,
         place[0][space] = other ? b : a;
         place[1][space++] = other ? a : b;
     }
+    f->why = "bodies move in planes and in space";
     if (f->h->space && f->h->space != space)
         return false;
     f->h->space = space;
-    size_t a = body_of(f, place[0]), b = body_of(f, place[1]);
-    if (a == MOST_BODIES || b == MOST_BODIES || a == b)
+    size_t a = body_of(f, place[0]);
+    size_t b = a == MOST_BODIES ? a : body_of(f, place[1]);
+    if (b == MOST_BODIES || a == b)
         return false;
     f->k[a][b] += k;
     f->k[b][a] += k;
@@ -85,8 +101,10 @@ static bool take_term(finding *f, const nevh__planned *term, double *room) {
     f->given = f->given || (kicks && speed == NEVH_FAST);
     for (size_t i = 0; fits && i < term->term->decl.count; i++) {
         fits = nevh__pair_find(term->term, i, &k, beside, room);
-        if (!fits && i) /* some of its instances are pairs */
+        if (!fits && i) { /* some of its instances are pairs */
+            f->why = "some terms of their effect are no attraction";
             return false;
+        }
         if (fits && k != 0 && !take_pair(f, term, i, k, beside))
             return false;
     }
@@ -259,16 +277,22 @@ static bool find_pairs(finding *f, const double q[], const double p[],
         }
     }
     l->count = h->n_bodies;
+    f->why = "two of them start at one place";
     if (!pair_up(h, l, at))
         return false;
     nevh__hierarchy_centres(h, speed);
     h->whole = !f->others && are_in_twos(f);
-    return f->given || (helps(f, at) && stay_apart(h, at, speed));
+    f->why = !helps(f, at) ? "they differ by half and more from the motion of "
+                             "pairs about one another"
+             : stay_apart(h, at, speed)
+                 ? NULL
+                 : "some come near the centre of mass of others";
+    return f->given || !f->why;
 }
 
 int nevh__hierarchy_new(const nevh_field *field, const double inverse_mass[],
                         const double q[], const double p[], size_t width,
-                        nevh__hierarchy **found) {
+                        nevh__hierarchy **found, const char **why) {
     finding *f = nevh__array(1, sizeof *f);
     loose *l = nevh__array(1, sizeof *l);
     nevh__hierarchy *h = nevh__array(1, sizeof *h);
@@ -284,6 +308,7 @@ int nevh__hierarchy_new(const nevh_field *field, const double inverse_mass[],
     }
     any = any && !status && q && find_pairs(f, q, p, width, l);
     *found = any ? h : NULL;
+    *why = f && !any ? f->why : NULL;
     if (!status && f->given && !any)
         status = NEVH_ESTRUCT;
     if (!any)

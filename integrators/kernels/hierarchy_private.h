@@ -18,12 +18,13 @@ enum { NEVH__MOST_BODIES = 64 };
    found         out: NULL where there are no such bodies; or, unless effects are to be
                  fast, where their attractions differ from such motion by more than
                  half, or a group comes near the centre of mass of another one
+   why           out: why attractions stay in B; NULL: they do not, or there are none
    returns       NEVH_OK; NEVH_ESTRUCT where effects are to be fast and there are none;
                  NEVH_ENOMEM
    cost          of n bodies n^3 operations and 20 n^2 values of H */
 int nevh__hierarchy_new(const nevh_field *, const double inverse_mass[],
                         const double q[], const double p[], size_t width,
-                        nevh__hierarchy **found);
+                        nevh__hierarchy **found, const char **why);
 void nevh__hierarchy_free(nevh__hierarchy *); /* NULL is allowed */
 /* True if it moves a coordinate. */
 bool nevh__hierarchy_moves(const nevh__hierarchy *, size_t coordinate);

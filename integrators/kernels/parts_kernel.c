@@ -116,11 +116,14 @@ static int plan(nevh_work *w) {
     return NEVH_OK;
 }
 
-const nevh__hierarchy *nevh__parts_hierarchy(const nevh_work *w) {
+const nevh__form_flow *nevh__parts_flow_of(const nevh_work *w) {
     const nevh__parts_scheme *o = w->plan;
-    return o && w->integrator->needs & NEVH_PARTS
-               ? nevh__form_flow_bodies(o->flow)
-               : NULL;
+    return o && w->integrator->needs & NEVH_PARTS ? o->flow : NULL;
+}
+
+const nevh__hierarchy *nevh__parts_hierarchy(const nevh_work *w) {
+    const nevh__form_flow *flow = nevh__parts_flow_of(w);
+    return flow ? nevh__form_flow_bodies(flow) : NULL;
 }
 
 /* The includer's data of a step. */

@@ -140,12 +140,14 @@ int nevh__choose_parts(nevh_stepper *s, nevh__part_role **part) {
 
 size_t nevh_stepper_hierarchy(const nevh_stepper *s, char text[], size_t size,
                               bool *whole) {
-    const nevh__hierarchy *h =
-        s && s->planned ? nevh__parts_hierarchy(&s->work) : NULL;
+    const nevh__form_flow *flow =
+        s && s->planned ? nevh__parts_flow_of(&s->work) : NULL;
+    const nevh__hierarchy *h = flow ? nevh__form_flow_bodies(flow) : NULL;
+    const char *why = flow ? nevh__form_flow_why(flow) : NULL;
     if (whole)
         *whole = h && nevh__hierarchy_is_whole(h);
     if (size)
-        *text = 0;
+        snprintf(text, size, "%s", why ? why : "");
     return h ? nevh__hierarchy_words(h, s->work.system, text, size) : 0;
 }
 

@@ -125,6 +125,15 @@ static void all_words(const plan *p, const nevh_stepper *s, double ratio,
     size_words(p, ratio, pairs > 0, notes);
 }
 
+static void attraction_words(const nevh_stepper *s, list *notes) {
+    enum { MOST = 200 };
+    char why[MOST];
+    if (!nevh_stepper_hierarchy(s, why, sizeof why, NULL) && *why)
+        list_print(
+            notes,
+            "Schemes by parts leave attractions of bodies to B, since %s", why);
+}
+
 /* Nothing where A has no force: there are other splittings for T(p) + V(q). */
 void parts_words(const plan *p, list *notes) {
     nevh_options o = plan_options(p, p->gradients.item[0]);
@@ -132,5 +141,6 @@ void parts_words(const plan *p, list *notes) {
     double ratio = nevh_stepper_status(s) ? INFINITY : ratio_along(p, s);
     if (isfinite(ratio))
         all_words(p, s, ratio, notes);
+    attraction_words(s, notes);
     nevh_stepper_free(s);
 }
