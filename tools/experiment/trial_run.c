@@ -37,10 +37,11 @@ typedef struct {
     nevh_field *exact;           /* the same, exact */
     double *slopes;              /* 4n: of both */
     double steepest, most_wrong; /* of exact slopes; of errors of the others */
+    double most_cancelled;       /* how much rounding changes exact ones */
     double scale;                /* of the energy */
     double *length;              /* 2n */
     double *z, *before;          /* 2n */
-    double *trial;               /* 2n */
+    double *trial, *moved;       /* 2n */
     double *fast;                /* 2n: the state of fastest.rate */
     nevh_stepper *stepper;
     bool ends; /* the orbit, or what may be spent, at a time */
@@ -132,16 +133,39 @@ static bool is_rounding(trial *f, double t, const double a[],
            sqrt(sum) <= most * floor;
 }
 
-/* Errors of the first gradient at the state. */
+/* Exact slopes a few roundings of the state away differ by more than these where numbers
+   cancel in the formulas. */
+static void look_for_cancellation(trial *f, double t, const double a[],
+                                  double b[]) {
+    enum { TRIES = 3 };
+    size_t n = f->plan->n;
+    for (int i = 0; i < TRIES; i++) {
+        for (size_t k = 0; k < 2 * n; k++) {
+            int ulps = (int)((k + 2 * (size_t)i) % 5) - 2;
+            f->moved[k] = f->trial[k] * (1 + ulps * DBL_EPSILON);
+        }
+        if (nevh_field_gradient(f->exact, 1, &t, f->moved, f->moved + n, b,
+                                b + n))
+            return;
+        for (size_t k = 0; k < 2 * n; k++)
+            if (fabs(b[k] - a[k]) > f->most_cancelled) {
+                f->most_cancelled = fabs(b[k] - a[k]);
+                f->found->cancelled_at = t;
+            }
+    }
+}
+
+/* Errors of the first gradient at the state, and of the exact one. */
 static void look_for_errors(trial *f, double t) {
     size_t n = f->plan->n;
-    double *a = f->slopes, *b = a + 2 * n;
+    double *a = f->slopes, *b = a + 2 * n, wrong = 0;
     const double *q = f->trial, *p = q + n;
     if (f->instances > large ||
-        nevh_field_gradient(f->exact, 1, &t, q, p, a, a + n) ||
-        nevh_field_gradient(f->gradient, 1, &t, q, p, b, b + n))
+        nevh_field_gradient(f->exact, 1, &t, q, p, a, a + n))
         return;
-    double wrong = 0;
+    look_for_cancellation(f, t, a, b);
+    if (nevh_field_gradient(f->gradient, 1, &t, q, p, b, b + n))
+        return;
     for (size_t k = 0; k < 2 * n; k++) {
         wrong = fmax(wrong, fabs(a[k] - b[k]));
         f->steepest = fmax(f->steepest, fabs(a[k]));
@@ -359,6 +383,7 @@ trial_run trial_run_new(const plan *p, bool chaos) {
     f.z = tool_allocate(2 * p->n, sizeof *f.z);
     f.before = tool_allocate(2 * p->n, sizeof *f.z);
     f.trial = tool_allocate(2 * p->n, sizeof *f.trial);
+    f.moved = tool_allocate(2 * p->n, sizeof *f.moved);
     f.fast = tool_allocate(2 * p->n, sizeof *f.fast);
     f.busiest.z = tool_allocate(2 * p->n, sizeof *f.z);
     o.gradient_step = 0;
@@ -379,6 +404,7 @@ trial_run trial_run_new(const plan *p, bool chaos) {
         nevh_stepper_free(f.stepper);
     }
     found.wrong = f.steepest > 0 ? f.most_wrong / f.steepest : 0;
+    found.cancelled = f.steepest > 0 ? f.most_cancelled / f.steepest : 0;
     found.frequency = f.fastest.frequency;
     found.frequency_at = f.fastest.frequency_at;
     found.rate = f.fastest.rate;

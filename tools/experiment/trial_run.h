@@ -70,6 +70,8 @@ typedef struct {
     double wrong, wrong_at;   /* largest error of the gradient, relative to the
                                  largest derivative; when */
     bool rounded;             /* as rounding of H explains */
+    double cancelled,
+        cancelled_at; /* the same of the exact one, by rounding alone */
     bool rough; /* H is not smooth on its way; false until somebody looks */
     trial_place *place; /* some, and that of `rate` last */
     size_t places;

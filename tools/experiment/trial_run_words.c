@@ -99,7 +99,16 @@ static void change_notes(const plan *p, list *notes) {
 static void gradient_notes(const plan *p, const trial_run *f, list *notes) {
     static const double much = 1e-6, far_off = 1e-2;
     const char *name = p->gradients.item[0];
-    if (isfinite(f->noise) && !(f->wrong > far_off))
+    bool cancelled = f->cancelled > much && !f->rough;
+    if (cancelled)
+        list_print(
+            notes,
+            "Gradient: numbers in the formulas of H cancel, so that rounding "
+            "changes even the exact gradient by %.1g of the largest "
+            "derivative (t = %.4g%s): write them otherwise, as "
+            "2*sin(x/2)^2 for 1 - cos(x)",
+            f->cancelled, f->cancelled_at, p->unit);
+    if (isfinite(f->noise) && !(f->wrong > far_off) && !cancelled)
         list_print(notes,
                    f->noise > 0
                        ? "Gradient: the rounding of %s causes an energy error "
@@ -112,12 +121,13 @@ static void gradient_notes(const plan *p, const trial_run *f, list *notes) {
     if (f->wrong > much && !f->rough)
         list_print(notes,
                    "Gradient: %s errs by %.1e of the largest derivative (t = "
-                   "%.4g%s): %s; --gradient exact takes no differences.",
+                   "%.4g%s): %s%s.",
                    name, f->wrong, f->wrong_at, p->unit,
                    f->rounded ? "its steps are so short that the rounding of H "
                                 "counts"
                               : "H varies there over shorter lengths than its "
-                                "differences are made for");
+                                "differences are made for",
+                   cancelled ? "" : "; --gradient exact takes no differences");
 }
 
 void trial_run_words(const plan *p, const trial_run *f, list *notes) {
