@@ -36,6 +36,7 @@ typedef struct {
     nevh_field *gradient;        /* the first that is asked for */
     nevh_field *exact;           /* the same, exact */
     double *slopes;              /* 4n: of both */
+    double *largest;             /* 4n: exact slopes, errors of the others */
     double steepest, most_wrong; /* of exact slopes; of errors of the others */
     double most_cancelled;       /* how much rounding changes exact ones */
     double scale;                /* of the energy */
@@ -169,11 +170,25 @@ static void look_for_errors(trial *f, double t) {
     for (size_t k = 0; k < 2 * n; k++) {
         wrong = fmax(wrong, fabs(a[k] - b[k]));
         f->steepest = fmax(f->steepest, fabs(a[k]));
+        f->largest[k] = fmax(f->largest[k], fabs(a[k]));
+        f->largest[2 * n + k] = fmax(f->largest[2 * n + k], fabs(a[k] - b[k]));
     }
     if (wrong > f->most_wrong) {
         f->most_wrong = wrong;
         f->found->wrong_at = t;
         f->found->rounded = is_rounding(f, t, a, b);
+    }
+}
+
+/* The variable whose own derivative is lost most. */
+static void find_lost(const trial *f) {
+    size_t n = f->plan->n;
+    for (size_t k = 0; k < 2 * n; k++) {
+        double own = f->largest[k], error = f->largest[2 * n + k];
+        if (own > 0 && error / own > f->found->lost) {
+            f->found->lost = error / own;
+            f->found->lost_variable = k;
+        }
     }
 }
 
@@ -391,6 +406,7 @@ trial_run trial_run_new(const plan *p, bool chaos) {
     f.gradient = nevh_field_new(p->system, &given);
     f.exact = nevh_field_new(p->system, &o);
     f.slopes = tool_allocate(4 * p->n, sizeof *f.slopes);
+    f.largest = tool_allocate(4 * p->n, sizeof *f.largest);
     f.scale = plan_energy_scale(p);
     f.instances = (double)nevh_field_counts(f.field).instances;
     f.slope = cost_of_gradient(&f);
@@ -403,6 +419,7 @@ trial_run trial_run_new(const plan *p, bool chaos) {
             judge(&f);
         nevh_stepper_free(f.stepper);
     }
+    find_lost(&f);
     found.wrong = f.steepest > 0 ? f.most_wrong / f.steepest : 0;
     found.cancelled = f.steepest > 0 ? f.most_cancelled / f.steepest : 0;
     found.frequency = f.fastest.frequency;

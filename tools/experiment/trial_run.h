@@ -70,6 +70,9 @@ typedef struct {
     double wrong, wrong_at;   /* largest error of the gradient, relative to the
                                  largest derivative; when */
     bool rounded;             /* as rounding of H explains */
+    double
+        lost; /* largest error of a derivative relative to its own largest size */
+    size_t lost_variable; /* whose; coordinates first */
     double cancelled,
         cancelled_at; /* the same of the exact one, by rounding alone */
     bool rough; /* H is not smooth on its way; false until somebody looks */

@@ -130,6 +130,20 @@ static void gradient_notes(const plan *p, const trial_run *f, list *notes) {
                    cancelled ? "" : "; --gradient exact takes no differences");
 }
 
+/* A derivative far below others may be lost where theirs are not. */
+static void lost_notes(const plan *p, const trial_run *f, list *notes) {
+    static const double most = 1e-2, much = 1e-6;
+    size_t k = f->lost_variable;
+    if (f->lost > most && !(f->wrong > much) && !f->rough)
+        list_print(
+            notes,
+            "Gradient: %s errs by %.1g of the largest dH/d%s%s, which is "
+            "far below other derivatives: --gradient exact takes no "
+            "differences",
+            p->gradients.item[0], f->lost, k < p->n ? "" : "p_",
+            nevh_scene_coordinate(p->scene, k % p->n));
+}
+
 void trial_run_words(const plan *p, const trial_run *f, list *notes) {
     const char *rad = *p->unit ? " rad" : "";
     if (f->drive > f->frequency)
@@ -155,6 +169,7 @@ void trial_run_words(const plan *p, const trial_run *f, list *notes) {
                    p->dt[0] * f->rate, p->dt[0], p->unit);
     outlook_notes(p, f, notes);
     gradient_notes(p, f, notes);
+    lost_notes(p, f, notes);
     edge_notes(p, f, notes);
 }
 
