@@ -68,21 +68,52 @@ NEVH__INLINE void turn(double s, double h, double q, double p, double slope_q,
     *dp -= 2 * d * (c * s * q + d * p);
 }
 
-NEVH_SIMD static void turn_all(const nevh__turns *x, size_t width, double h,
-                               const double q[], const double p[],
-                               const double slope_q[], const double slope_p[],
-                               double dq[], double dp[]) {
-    for (size_t k = 0; k < x->n; k++)
-        for (size_t i = k * width; i < (k + 1) * width; i++)
-            if (x->scale[k] > 0)
-                turn(x->scale[k], h, q[i], p[i], slope_q[i], slope_p[i], &dq[i],
-                     &dp[i]);
-            else
-                dp[i] -= h * slope_q[i];
+/* Rows of numbers at each coordinate, of which some are beside one another. */
+typedef struct {
+    const double *q, *p, *slope_q, *slope_p;
+    double *dq, *dp;
+} rows;
+
+NEVH__INLINE void turn_at(const rows *x, double s, double h, size_t i) {
+    turn(s, h, x->q[i], x->p[i], x->slope_q[i], x->slope_p[i], &x->dq[i],
+         &x->dp[i]);
+}
+
+/* Coordinates in turn, of one orbit. */
+NEVH_SIMD static void turn_some(const double scale[], size_t from, size_t to,
+                                double h, rows x) {
+    size_t whole = (to - from) / 8 * 8;
+    NEVH_LANES(i, whole) {
+        turn_at(&x, scale[from + i], h, from + i);
+    }
+    for (size_t i = from + whole; i < to; i++)
+        turn_at(&x, scale[i], h, i);
+}
+
+/* A coordinate of orbits side by side. */
+NEVH_SIMD static void turn_lanes(double s, size_t from, size_t width, double h,
+                                 rows x) {
+    size_t whole = width / 8 * 8;
+    NEVH_LANES(i, whole) {
+        turn_at(&x, s, h, from + i);
+    }
+    for (size_t i = from + whole; i < from + width; i++)
+        turn_at(&x, s, h, i);
 }
 
 void nevh__turns_add(const nevh__turns *x, size_t width, double h,
                      const double q[], const double p[], const double slope_q[],
                      const double slope_p[], double dq[], double dp[]) {
-    turn_all(x, width, h, q, p, slope_q, slope_p, dq, dp);
+    const rows all = {q, p, slope_q, slope_p, dq, dp};
+    for (size_t k = 0, to = 0; k < x->n; k = to) {
+        bool turned = x->scale[k] > 0;
+        while (to < x->n && (x->scale[to] > 0) == turned)
+            to++;
+        for (size_t i = k * width; !turned && i < to * width; i++)
+            dp[i] -= h * slope_q[i];
+        if (turned && width == 1)
+            turn_some(x->scale, k, to, h, all);
+        for (size_t i = k; turned && width > 1 && i < to; i++)
+            turn_lanes(x->scale[i], i * width, width, h, all);
+    }
 }
