@@ -103,6 +103,7 @@ suites = \
 	tests/diagnose/check_reference_time \
 	tests/robust/check_failures \
 	tests/robust/check_null \
+	tests/robust/check_traps \
 	tests/robust/check_hard_steps \
 	tests/robust/check_hard_pendulum \
 	tests/scheme/check_implicit \

@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <unistd.h>
 #include <fcntl.h>
+#include <fenv.h>
 #include <gsl/gsl_errno.h>
 #include <signal.h>
 #include <string.h>
@@ -43,8 +44,10 @@ static void open_standard_files(void) {
 }
 
 /* A limit of a file's size is an error like another, and GSL, whose own handler
-   aborts, is to say what it lacks. */
+   aborts, is to say what it lacks.  No floating-point exception is trapped. */
 static void set_process(void) {
+    fenv_t ignored;
+    feholdexcept(&ignored);
     open_standard_files();
     signal(SIGXFSZ, SIG_IGN);
     gsl_set_error_handler_off();

@@ -6,6 +6,7 @@
 #include "kernels/scheme_table_private.h"
 #include "system/print_private.h"
 #include "system/system_private.h"
+#include <fenv.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -141,9 +142,12 @@ int nevh_integrator_facts(const nevh_integrator *scheme,
     if (!scheme || !to)
         return NEVH_EINVAL;
     *to = (nevh_scheme_facts){.value = NAN, .due = NAN};
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
     int status = nevh__numbers_of(scheme, &x);
     if (!status)
         status = facts_of_table(&x, to);
+    fesetenv(&own);
     nevh__numbers_free(&x);
     return status;
 }

@@ -11,6 +11,7 @@
 #include "kernels/scheme_table_private.h"
 #include "system/print_private.h"
 #include "system/system_private.h"
+#include <fenv.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -461,6 +462,15 @@ static bool make(own_scheme *x, const nevh_scheme_table *t,
     return made;
 }
 
+static bool make_untrapped(own_scheme *x, const nevh_scheme_table *table,
+                           nevh_table_error *e) {
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
+    bool made = make(x, table, e);
+    fesetenv(&own);
+    return made;
+}
+
 nevh_integrator *nevh_integrator_new(const nevh_scheme_table *table,
                                      nevh_table_error *error) {
     nevh_table_error own;
@@ -471,7 +481,7 @@ nevh_integrator *nevh_integrator_new(const nevh_scheme_table *table,
         no_memory(e);
     else if (!table)
         fail(e, 0, SIZE_MAX, "there is no table");
-    else if (make(x, table, e))
+    else if (make_untrapped(x, table, e))
         return &x->scheme;
     if (x)
         nevh_integrator_free(&x->scheme);

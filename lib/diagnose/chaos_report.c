@@ -1,6 +1,7 @@
 /* nevh: exponents with their errors, and the word on an orbit.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/chaos_private.h"
+#include <fenv.h>
 #include <nevh/simd.h>
 #include <math.h>
 
@@ -166,7 +167,7 @@ static nevh_chaos_verdict verdict_on(const nevh_chaos *c, size_t start) {
 /* The error is the largest of three: starts near by differ, and batches in time;
    and all of them may come from where chaos is stronger than it is elsewhere,
    which halves of the run tell. */
-double nevh_chaos_exponent(const nevh_chaos *c, size_t i, double *error) {
+static double find_exponent(const nevh_chaos *c, size_t i, double *error) {
     double sum = 0, squares = 0, variance = 0, count = 0;
     double growth[2] = {0, 0}, time[2] = {0, 0};
     if (error)
@@ -193,6 +194,14 @@ double nevh_chaos_exponent(const nevh_chaos *c, size_t i, double *error) {
     double largest = fmax(fmax(between, within), change * change);
     if (error)
         *error = nevh_simd_hypot(sqrt(largest), resolution(c, 0));
+    return mean;
+}
+
+double nevh_chaos_exponent(const nevh_chaos *c, size_t i, double *error) {
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
+    double mean = find_exponent(c, i, error);
+    fesetenv(&own);
     return mean;
 }
 
@@ -226,6 +235,8 @@ nevh_chaos_report nevh_chaos_result(const nevh_chaos *c) {
     nevh_chaos_report r = {0};
     if (!c || !c->planned)
         return r;
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
     r.t = c->t_start + c->way * chaos_report_elapsed(c, 0);
     r.verdict = verdict_among_starts(c);
     r.sali = c->start[0].sali;
@@ -233,6 +244,7 @@ nevh_chaos_report nevh_chaos_result(const nevh_chaos *c) {
     r.kinks = c->kinks > 0;
     r.starts = c->starts;
     r.agreeing = starts_of(c, verdict_on(c, 0));
+    fesetenv(&own);
     return r;
 }
 

@@ -3,6 +3,7 @@
 #include "diagnose/chaos_private.h"
 #include "diagnose/kinks_private.h"
 #include "run/stepper_private.h"
+#include <fenv.h>
 #include <math.h>
 #include <string.h>
 
@@ -337,8 +338,11 @@ bool nevh__chaos_advance(nevh_chaos *c, double last) {
 int nevh_chaos_run(nevh_chaos *c, double until) {
     if (!c || !isfinite(until))
         return NEVH_EINVAL;
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
     double last = nevh__chaos_steps(c, until);
     while (nevh__chaos_advance(c, last))
         ;
+    fesetenv(&own);
     return c->report.status;
 }

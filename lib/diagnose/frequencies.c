@@ -3,6 +3,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/frequencies_private.h"
 #include "diagnose/spectrum_private.h"
+#include <fenv.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -114,10 +115,13 @@ int nevh_frequencies(double h, size_t count, const double values[], size_t most,
         *found = 0;
     if (status)
         return status;
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
     bool good = nevh__spectrum_open(&a, h, count, values, most) &&
                 nevh__spectrum_find_lines(&a, most) &&
                 frequencies_describe(&a, h, lines, found);
     nevh__spectrum_close(&a);
+    fesetenv(&own);
     if (good)
         qsort(lines, *found, sizeof *lines, by_amplitude);
     return good ? NEVH_OK : NEVH_ENOMEM;

@@ -1,6 +1,7 @@
 /* nevh: a closed curve of starts, carried along, and the area in it.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/loop_private.h"
+#include <fenv.h>
 #include <gsl/gsl_integration.h>
 #include <math.h>
 #include <stdlib.h>
@@ -343,11 +344,14 @@ int nevh_loop_carry(nevh_loop *l) {
         return l->report.status;
     l->carried = true;
     l->reach = l->options.times;
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
     int status = loop_begin(l);
     if (!status)
         status = cut_all(l);
     if (!status)
         status = nevh__loop_look_inside(l);
+    fesetenv(&own);
     if (status)
         l->reach = 0;
     if (l->shape)

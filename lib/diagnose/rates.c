@@ -4,6 +4,7 @@
    the gradient.  Of large systems the largest one alone, by the power method.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "system/system_private.h"
+#include <fenv.h>
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
@@ -250,5 +251,10 @@ int nevh_rates_at(nevh_rates *r, double t, const double q[], const double p[],
     memcpy(r->state, q, r->n * sizeof *q);
     memcpy(r->state + r->n, p, r->n * sizeof *p);
     *frequency = *growth = 0;
-    return (r->dense ? by_eigenvalues : by_powers)(r, t, frequency, growth);
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
+    int status =
+        (r->dense ? by_eigenvalues : by_powers)(r, t, frequency, growth);
+    fesetenv(&own);
+    return status;
 }

@@ -7,6 +7,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "ensemble/ensemble_private.h"
 #include "gradient/field_private.h"
+#include <fenv.h>
 #include <math.h>
 #include <string.h>
 
@@ -386,6 +387,8 @@ int nevh_ensemble_run(nevh_ensemble *e, nevh_member_fn next,
     e->stopped = false;
     for (size_t lane = 0; lane < e->width; lane++)
         e->lanes[lane].busy = false;
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
     if (e->chaotic && nevh__chaotic_run(e))
         ; /* nothing else is asked for */
     else if (e->alone)
@@ -393,6 +396,7 @@ int nevh_ensemble_run(nevh_ensemble *e, nevh_member_fn next,
             run_one(e);
     else
         run_lanes(e);
+    fesetenv(&own);
     if (e->chaotic)
         nevh__chaotic_finish(e);
     for (size_t lane = 0; lane < e->width; lane++)

@@ -5,6 +5,7 @@
    stepper's memory stays with the orbit.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/run_at_private.h"
+#include <fenv.h>
 #include <math.h>
 #include <string.h>
 
@@ -113,7 +114,7 @@ int nevh__span_check(nevh_stepper *s, double t0, double h, double t_end) {
 }
 
 /* After nevh__begin_run. */
-static int orbit_run(nevh__running *r) {
+static int orbit_run_untrapped(nevh__running *r) {
     nevh_stepper *s = r->stepper;
     const nevh_orbit *o = r->orbit;
     nevh__branch b = {.t = nevh__start_time(r), .t_end = o->t_end};
@@ -132,6 +133,17 @@ static int orbit_run(nevh__running *r) {
         nevh__samples_rest(r->samples, r->q, r->p);
     nevh__samples_free(r->samples);
     nevh__branch_close(&b);
+    return status;
+}
+
+static int orbit_run(nevh__running *r) {
+    const nevh_stepper *s = r->stepper;
+    fenv_t own;
+    if (s->holds_traps)
+        feholdexcept(&own);
+    int status = orbit_run_untrapped(r);
+    if (s->holds_traps)
+        fesetenv(&own);
     return status;
 }
 

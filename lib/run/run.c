@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "kernels/taylor_private.h"
 #include "run/run_at_private.h"
+#include <fenv.h>
 
 int nevh__show(nevh__running *r, bool last, double t) {
     nevh_stepper *s = r->stepper;
@@ -129,7 +130,12 @@ int nevh_run(nevh_stepper *s, double t0, double h, size_t steps, double q[],
     int status = nevh__begin_run(&r);
     if (status)
         return status;
+    fenv_t own;
+    if (s->holds_traps)
+        feholdexcept(&own);
     status = nevh__run_steps(&r, steps, true);
     nevh__end_run(&r);
+    if (s->holds_traps)
+        fesetenv(&own);
     return status;
 }

@@ -68,6 +68,7 @@ static int stepper_check_options(nevh_stepper *s,
                           "the tolerance %g is not a positive number",
                           tolerance);
     s->own_time = integrator->own_time || s->options.transform;
+    s->holds_traps = s->own_time || !nevh_integrator_explicit(integrator);
     if (s->own_time && w->width > 1)
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "%s%s chooses its own times and takes one orbit, not "
@@ -302,7 +303,12 @@ int nevh_stepper_apply(nevh_stepper *s, double t, double h, double q[],
     int status = nevh__begin(s, t, h, q, p);
     if (status)
         return status;
+    fenv_t own;
+    if (s->holds_traps)
+        feholdexcept(&own);
     status = nevh__advance(s, t, h, q, p);
+    if (s->holds_traps)
+        fesetenv(&own);
     if (status)
         nevh__undo(s);
     else

@@ -12,6 +12,7 @@ struct nevh_stepper {
     nevh_options options; /* arrays are the stepper's own */
     nevh__report report;
     bool planned, own_time;
+    bool holds_traps; /* what is implicit, or measures errors, divides by 0 */
     unsigned long revision; /* of the transform's system when planned */
     /* The kernel's memory begins a larger one: then the compensation of friction, n
        rows, or what the transform keeps, and the ledger's two.  A lane that

@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #define _POSIX_C_SOURCE 200809L
 #include "scene/scene_ensemble_private.h"
+#include <fenv.h>
 #include <nevh/sweep.h>
 #include <errno.h>
 #include <stdio.h>
@@ -42,6 +43,23 @@ static bool make_exact(nevh__scene_model *m, bool away) {
     return true;
 }
 
+static bool fill_model(nevh_scene *s, nevh__scene_model *m,
+                       digits_kind digits) {
+    if (digits && !make_exact(m, digits == AWAY)) {
+        nevh__scene_no_memory(s);
+        return false;
+    }
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
+    bool made = nevh__model_parameters(s, m) && nevh__model_coordinates(s, m) &&
+                nevh__model_definitions(s, m) && nevh__model_values(s, m) &&
+                nevh__model_terms(s, m) && nevh__model_shown(s, m) &&
+                nevh__model_labels(s, m) && nevh__model_integrators(s, m) &&
+                nevh__model_run(s, m) && nevh__model_ensemble(s, m);
+    fesetenv(&own);
+    return made;
+}
+
 static nevh__scene_model *new_model(nevh_scene *s, digits_kind digits) {
     nevh__scene_model *m = nevh__array(1, sizeof *m);
     if (!m || !(m->names = nevh__names_new())) {
@@ -49,13 +67,7 @@ static nevh__scene_model *new_model(nevh_scene *s, digits_kind digits) {
         nevh__scene_no_memory(s);
         return NULL;
     }
-    if (digits && !make_exact(m, digits == AWAY))
-        nevh__scene_no_memory(s);
-    else if (nevh__model_parameters(s, m) && nevh__model_coordinates(s, m) &&
-             nevh__model_definitions(s, m) && nevh__model_values(s, m) &&
-             nevh__model_terms(s, m) && nevh__model_shown(s, m) &&
-             nevh__model_labels(s, m) && nevh__model_integrators(s, m) &&
-             nevh__model_run(s, m) && nevh__model_ensemble(s, m))
+    if (fill_model(s, m, digits))
         return m;
     nevh__model_free(m);
     return NULL;

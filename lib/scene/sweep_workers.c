@@ -8,6 +8,7 @@
    the scene as it is; so is a member, whichever others there are.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/worker_private.h"
+#include <fenv.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -373,6 +374,8 @@ static int run(nevh_sweep *s, nevh_wanted_fn wanted, nevh_sweep_fn tell_fn,
     bool ready = all && nevh__sweep_window_open(s);
     for (size_t i = 0; ready && i < threads; i++)
         ready = equip(&all[i], s);
+    fenv_t own; /* as in nevh_stepper_new; threads inherit it */
+    feholdexcept(&own);
     for (size_t i = 1; ready && i < threads; i++)
         all[i].started = !pthread_create(&all[i].thread, NULL, work, &all[i]);
     if (ready)
@@ -382,6 +385,7 @@ static int run(nevh_sweep *s, nevh_wanted_fn wanted, nevh_sweep_fn tell_fn,
             pthread_join(all[i].thread, NULL);
         dismiss(&all[i]);
     }
+    fesetenv(&own);
     free(all);
     nevh__sweep_window_close(s);
     if (!ready || s->failed)

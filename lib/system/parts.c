@@ -1,6 +1,7 @@
 /* nevh: which terms are in A, and which in B?
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "system/parts_private.h"
+#include <fenv.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -108,7 +109,10 @@ int nevh__parts_find(const nevh_system *s, bool substeps,
 static int parts_count(const nevh_system *s, size_t fast[], size_t slow[],
                        nevh__parts_fault *fault) {
     nevh__part_role *all = nevh__array(s->n_terms, sizeof *all);
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
     int status = all ? nevh__parts_find(s, false, all, fault) : NEVH_ENOMEM;
+    fesetenv(&own);
     for (size_t i = 0; i < s->n_effects; i++)
         fast[i] = slow[i] = 0;
     for (size_t i = 0; status != NEVH_ENOMEM && i < s->n_terms; i++) {

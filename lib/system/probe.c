@@ -8,6 +8,7 @@
    to a refusal that says why, the opposite to a wrong orbit.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "system/probe_private.h"
+#include <fenv.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -123,6 +124,8 @@ int nevh_system_probe(const nevh_system *s, double t, const double q[],
     if (nevh_system_status(s))
         return nevh_system_status(s);
     nevh__origin o = nevh__origin_at(s->n, t, q, p, scale);
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
     int status = NEVH_OK;
     for (size_t i = 0; i < s->n_terms && status != NEVH_ENOMEM; i++) {
         const nevh__term_entry *term = s->terms[i];
@@ -131,6 +134,7 @@ int nevh_system_probe(const nevh_system *s, double t, const double q[],
         int one = probe_term(term, &o, result);
         status = one ? one : status;
     }
+    fesetenv(&own);
     result->separable = result->separable && !status;
     return status;
 }

@@ -154,7 +154,11 @@ nevh_certain *nevh__certain_from(const nevh__certain_start *from,
     if (!c)
         return NULL;
     c->digits = digits;
-    if (certain_make(c, from, other) != NEVH_ENOMEM)
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
+    int status = certain_make(c, from, other);
+    fesetenv(&own);
+    if (status != NEVH_ENOMEM)
         return c;
     nevh_certain_free(c);
     return NULL;
@@ -380,6 +384,8 @@ int nevh_certain_go_to(nevh_certain *c, double time, long double rest) {
     if (!isfinite((double)t))
         return nevh__fail(&c->report, NEVH_EINVAL,
                           "the time %g is not a finite number", (double)t);
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
     int status = look_ahead(c, (double)t);
     if (!status)
         status = nevh__certain_end(c, go_both(c, t));
@@ -388,6 +394,7 @@ int nevh_certain_go_to(nevh_certain *c, double time, long double rest) {
         status = start_both(c, false);
         status = status ? status : nevh__certain_end(c, go_both(c, t));
     }
+    fesetenv(&own);
     return status;
 }
 

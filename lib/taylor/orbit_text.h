@@ -7,6 +7,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "taylor/number_text.h"
 #include "taylor/orbit_private.h"
+#include <fenv.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -304,7 +305,8 @@ static void find_unit(orbit *o, real t, const real state[]) {
     }
 }
 
-static int begin(orbit *o, real t, const real state[], nevh__report *report) {
+static int begin_untrapped(orbit *o, real t, const real state[],
+                           nevh__report *report) {
     note_state(o, state);
     for (size_t i = 0; i < 2 * o->n; i++)
         o->seen[i] = fmax(o->seen[i], o->most[i]);
@@ -328,6 +330,16 @@ static int begin(orbit *o, real t, const real state[], nevh__report *report) {
     note_past(o);
     note_narrow(o);
     return NEVH_OK;
+}
+
+/* Coefficients that are 0, and series too long for their unit of time, trap no
+   floating-point exception. */
+static int begin(orbit *o, real t, const real state[], nevh__report *report) {
+    fenv_t own;
+    feholdexcept(&own);
+    int status = begin_untrapped(o, t, state, report);
+    fesetenv(&own);
+    return status;
 }
 
 int NAMED(nevh__series_orbit_start)(orbit *o, real t, const real state[],
