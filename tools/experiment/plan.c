@@ -244,10 +244,19 @@ char *plan_title(const nevh_scene *scene, const char *name, const options *o) {
     return title;
 }
 
+/* It takes an orbit to find: of many effects as long as a row does. */
+struct start_scale {
+    char *of; /* what it depends on; NULL: none was found yet */
+    double *start;
+    double scale;
+    bool known;
+};
+
 int plan_make(plan *p, const options *o) {
     *p = (plan){.name = o->operands.count > 1 ? o->operands.item[1] : "",
                 .ends = NAN,
-                .steppers = stepper_cache_new()};
+                .steppers = stepper_cache_new(),
+                .start_scale = tool_allocate(1, sizeof(start_scale))};
     if (scene_open(&p->scene, o))
         return TOOL_USAGE;
     take_settings(p, o);
@@ -333,9 +342,19 @@ static double largest_until_stop(const plan *whole) {
     return isfinite(stopped) ? run.met * run.scale : INFINITY;
 }
 
+static char *effects_that_are(const nevh_system *s, bool on) {
+    list names = {0};
+    for (size_t i = 0; i < nevh_system_effect_count(s); i++) {
+        const char *name = nevh_system_effect_name(s, i);
+        if (nevh_system_effect_on(s, name) == on)
+            list_add(&names, name);
+    }
+    return list_joined(&names);
+}
+
 /* The energy scale after one observation, which may leave it unknown.  It may be that
    of a motion that outlasts the run, but not of one that goes on beyond its `stop`. */
-static double scale_of_start(const plan *p, bool *known) {
+static double find_scale(const plan *p, bool *known) {
     const nevh_options as = {.portable = p->portable};
     nevh_energy *e = nevh_energy_new(p->system, &as);
     nevh_energy_observe(e, 0, p->run->t_start, p->q, p->p);
@@ -346,6 +365,29 @@ static double scale_of_start(const plan *p, bool *known) {
     return scale > own * (1 + 1e-9) && own > 0
                ? fmin(scale, fmax(own, largest_until_stop(p)))
                : scale;
+}
+
+/* The scale depends on these, and on the state. */
+static char *scale_key(const plan *p) {
+    return text_print("%p %d %a %a %a %s %s", (const void *)p->system,
+                      (int)p->portable, p->run->t_start, p->t_end,
+                      p->dts ? p->dt[0] : 0, list_joined(&p->integrators),
+                      effects_that_are(p->system, true));
+}
+
+/* The same, found once for all rows of a plan. */
+static double scale_of_start(const plan *p, bool *known) {
+    start_scale *last = p->start_scale;
+    double *start = plan_state(p);
+    char *of = scale_key(p);
+    bool found = last->of && strcmp(last->of, of) == 0 &&
+                 memcmp(last->start, start, 2 * p->n * sizeof *start) == 0;
+    if (!found) {
+        double scale = find_scale(p, known);
+        *last = (start_scale){of, start, scale, *known};
+    }
+    *known = last->known;
+    return last->scale;
 }
 
 double plan_energy_scale(const plan *p) {
@@ -360,16 +402,6 @@ void plan_set_scale(const plan *p, nevh_energy *energy) {
                                             : scale_of_start(p, &known);
     if (known)
         nevh_energy_set_scale(energy, scale);
-}
-
-static char *effects_that_are(const nevh_system *s, bool on) {
-    list names = {0};
-    for (size_t i = 0; i < nevh_system_effect_count(s); i++) {
-        const char *name = nevh_system_effect_name(s, i);
-        if (nevh_system_effect_on(s, name) == on)
-            list_add(&names, name);
-    }
-    return list_joined(&names);
 }
 
 char *plan_structure(const plan *p) {

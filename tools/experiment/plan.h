@@ -7,6 +7,7 @@
 
 typedef struct stepper_cache stepper_cache;
 typedef struct energies energies;
+typedef struct start_scale start_scale;
 
 /* plan.c: the rows to run, from options, scene and defaults. */
 typedef struct {
@@ -42,16 +43,17 @@ typedef struct {
     nevh_reference *reference; /* NULL: not asked for, or there is none */
     double reference_end;
     double ends; /* when the solution does; NAN: not, as far as is known */
-    char *no_reference;      /* why there is none */
-    const char *observable;  /* whose errors count, not of states; NULL */
-    bool outcome;            /* that is no value along the orbit */
-    double outcome_value;    /* its own */
-    double observable_scale; /* that its errors are divided by */
-    bool observable_level;   /* its size, not its range */
-    double observable_error; /* what that of the reference makes of it */
-    energies *energies;      /* whose energies rows compare; NULL: none */
-    bool error_bounds;       /* rows have one */
-    stepper_cache *steppers; /* of steppers */
+    char *no_reference;       /* why there is none */
+    const char *observable;   /* whose errors count, not of states; NULL */
+    bool outcome;             /* that is no value along the orbit */
+    double outcome_value;     /* its own */
+    double observable_scale;  /* that its errors are divided by */
+    bool observable_level;    /* its size, not its range */
+    double observable_error;  /* what that of the reference makes of it */
+    energies *energies;       /* whose energies rows compare; NULL: none */
+    bool error_bounds;        /* rows have one */
+    stepper_cache *steppers;  /* of steppers */
+    start_scale *start_scale; /* the energy scale that was found last, shared */
 } plan;
 /* The scene's own title, else its name, and what options change. */
 char *plan_title(const nevh_scene *, const char *name, const options *);

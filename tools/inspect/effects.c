@@ -8,8 +8,9 @@
 #include <string.h>
 #include <time.h>
 
-static const double time_enough = 0.02; /* seconds, for one effect */
-static const double step_given = 1e-3;  /* where steps need not be good */
+/* seconds: for one effect, and at most for all */
+static const double time_enough = 0.02, time_for_all = 1;
+static const double step_given = 1e-3; /* where steps need not be good */
 
 /* An effect with all others off. */
 typedef struct {
@@ -66,12 +67,14 @@ static void time_gradients(nevh_field *field, const plan *p, alone *a) {
     uint64_t before = nevh_field_counts(field).values;
     size_t count = 0;
     int status = 0;
-    double start = cpu_seconds();
+    double effects = (double)nevh_system_effect_count(p->system);
+    double start = cpu_seconds(),
+           enough = fmin(time_enough, time_for_all / effects);
     do {
         for (int i = 0; !status && i < 16; i++, count++)
             status = nevh_field_gradient(field, 1, &t, p->q, p->p, d, d + p->n);
         spent = cpu_seconds() - start;
-    } while (!status && spent < time_enough);
+    } while (!status && spent < enough);
     double values = (double)(nevh_field_counts(field).values - before);
     a->gradient = status ? NAN : spent / (double)count;
     a->each = status || values == 0 ? NAN : spent / values;
