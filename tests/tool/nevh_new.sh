@@ -43,6 +43,13 @@ exits 2 new $work/hoop
 says 'hoop\.nevh is there already'
 exits 0 new $work/loud.NEVH
 test -e $work/loud.NEVH || fails "makes another file"
+# Names that are none: no hidden file, no file beside a device.
+mkdir $work/empty
+mkfifo $work/empty/pipe
+for name in . .. ... .nevh "" pipe; do
+    exits 2 new "$work/empty/$name"
+done
+test "$(ls -A $work/empty)" = pipe || fails "makes hidden files"
 exits 2 new $work/nowhere/a.nevh
 says 'cannot be written'
 exits 2 new $work/a.nevh --from pendulm

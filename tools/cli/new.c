@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 /* The text of a scene, changed as the options say; NULL with the message
    printed. */
@@ -41,6 +42,21 @@ static char *file_of(const char *name) {
                       end && strcasecmp(end, ".nevh") == 0 ? "" : ".nevh");
 }
 
+/* Why a name is not one of a file: it has none, such as . or a/, or is a device. */
+static const char *no_file(const char *name) {
+    struct stat there;
+    const char *last = strrchr(name, '/');
+    last = last ? last + 1 : name;
+    if (!last[strspn(last, ".")])
+        return "has no name of a file";
+    if (strcasecmp(last, ".nevh") == 0)
+        return "has nothing before its ending";
+    return stat(name, &there) == 0 && !S_ISREG(there.st_mode) &&
+                   !S_ISDIR(there.st_mode)
+               ? "is no regular file"
+               : NULL;
+}
+
 static int make_file(const options *o, const char *file) {
     char *text = o->from ? text_from(o, file) : text_print("%s", scene_sample);
     int status = text ? write_new(file, text) : TOOL_USAGE;
@@ -56,7 +72,12 @@ static int new_scene(const options *o) {
     if (!o->from && o->settings.count)
         return tool_refuse("--set, --with and --without change the scene that "
                            "--from names");
-    char *file = file_of(o->operands.item[1]);
+    const char *name = o->operands.item[1], *why = no_file(name);
+    if (why)
+        return tool_refuse(
+            "%s %s: nevh new takes one file to be made: FILE.nevh",
+            *name ? name : "\"\"", why);
+    char *file = file_of(name);
     return make_file(o, file);
 }
 
