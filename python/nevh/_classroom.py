@@ -238,9 +238,23 @@ def shown(number, answer):
     return "%.*g" % (answer.task.digits + 1, number)
 
 
+def is_number(text):
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
 def as_csv(rows):
+    """As tools/cli/table.c writes them: spreadsheets compute a text that begins as a formula
+    does, unless an apostrophe is before it."""
+    def shown(cell):
+        text = str(cell)
+        computed = text[:1] in tuple("=+-@\t\r") and not is_number(text)
+        return "'" + text if computed else cell
     made = io.StringIO()
-    csv.writer(made, lineterminator="\n").writerows(rows)
+    csv.writer(made, lineterminator="\n").writerows([[shown(x) for x in row] for row in rows])
     return made.getvalue()
 
 

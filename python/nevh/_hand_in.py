@@ -185,7 +185,7 @@ def rows_of(path, text=None):
     mark = max(",;\t", key=text.splitlines()[0].count)
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=mark)
     for row in reader:
-        row = [" ".join(cell.split()) for cell in row]
+        row = [re.sub("^'(?=[=+@-])", "", " ".join(cell.split())) for cell in row]
         if any(row):
             yield reader.line_num, row
 

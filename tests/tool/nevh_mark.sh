@@ -88,6 +88,16 @@ exits 0 mark $work/form.csv --for $work/names --key 7
 test "$(grep -c 'missing' $work/out)" = 2 || fails "does not read its own form"
 test "$(grep -c ': 0 of 1 are right' $work/out)" = 2 || fails "does not count who is missing"
 
+# Spreadsheets compute no name of a form, and it is that name when it comes back.
+printf '=1+1\n@Lovelace\n-2\n' >$work/computed
+exits 0 sheet 8 --for $work/computed --as form -o $work/form.csv
+cut -c1-3 $work/form.csv >$work/begin
+test "$(sed 1d $work/begin | tr '\n' ' ')" = "'=1 '@L -2 " ||
+    fails "a spreadsheet computes names: $(cat $work/form.csv)"
+exits 0 mark $work/form.csv --for $work/computed --key 7
+test "$(grep -c ': 0 of 1 are right' $work/out)" = 3 || fails "does not find its own names"
+has '^=1\+1'
+
 # Names that are not in the list, rows without one, and tasks that are none: all at once.
 printf 'name,task,answer\nJosé Núñez,8.1,1\nAda Lovelase,8.1,1\n,8.1,1\nAda Lovelace,8.7,1\n' >$work/bad.csv
 exits 2 mark $work/bad.csv --for $work/names --key 7
