@@ -8,6 +8,7 @@ from __future__ import annotations
 import ctypes as c
 import math
 import os
+import re
 import threading
 import warnings
 from typing import Any, Mapping, Sequence
@@ -72,7 +73,9 @@ def sweep(scene: str | os.PathLike | Scene, vary: Any = None,
         made._check(_lib.scene_vary(made._made, encoded, len(lines)))
     if outcomes is not None:
         text = outcomes if isinstance(outcomes, str) else ", ".join(outcomes)
-        made._check(_lib.scene_set_outcomes(made._made, text.encode()))
+        status = _lib.scene_set_outcomes(made._made, text.encode())
+        _check(status, re.sub(r"^assignment:\d+:(\d+): error: ", r"outcomes, column \1: ",
+                              _lib.scene_message(made._made).decode()))
     settings = made._settings()
     if integrator is None and settings.integrators:
         integrator = settings.integrator[0].decode()

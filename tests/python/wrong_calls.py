@@ -123,5 +123,14 @@ for function, arguments, named in calls:
         wrong += 1
         print("%s %.150r %.150r: %.200s" % (getattr(function, "__name__", function), arguments,
                                             named, found))
+# What the caller wrote has a name, and no line.
+for outcomes in ("period", "no_such", "last(", "state, state"):
+    try:
+        nevh.sweep("kepler", {"e": [.1, .5]}, outcomes)
+    except nevh.Error as error:
+        found = str(error)
+        if "assignment" in found or not found.startswith("outcomes"):
+            wrong += 1
+            print("sweep: outcomes %r: %.200s" % (outcomes, found))
 print("%d wrong calls, %d without an exception of their own" % (len(calls), wrong))
 sys.exit(wrong > 0)
