@@ -12,6 +12,7 @@
 #define _XOPEN_SOURCE 700
 #include "native/compiler_private.h"
 #include "system/system_private.h"
+#include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -370,12 +371,20 @@ static const char *first_error(const char *text) {
     return error ? error + sizeof mark - 1 : text + strspn(text, " \t\r\n");
 }
 
+/* Puts question marks for characters that control a terminal. */
+static void make_printable(char *text) {
+    for (; *text; text++)
+        if (iscntrl((unsigned char)*text))
+            *text = '?';
+}
+
 static void tell_failure(const nevh__compiling *run, char why[], size_t size) {
     const char *error = first_error(run->output.text);
-    if (*error)
+    if (*error) {
         snprintf(why, size, "the C compiler fails: %.*s",
                  (int)strcspn(error, "\r\n"), error);
-    else if (run->status > 128)
+        make_printable(why);
+    } else if (run->status > 128)
         snprintf(why, size, "the C compiler fails: signal %d ended it",
                  run->status - 128);
     else

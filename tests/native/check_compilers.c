@@ -100,6 +100,7 @@ static const struct {
     {"kill -9 $$", "Killed"},
     {"kill -15 $$", "Terminated"},
     {"echo; echo; echo no licence; exit 1", "the C compiler fails: no licence"},
+    {"printf 'a\\033[31mb\\tc\\n'; exit 1", "the C compiler fails: a?[31mb?c"},
     {"echo x.c:1: error: too odd; exit 1", "the C compiler fails: too odd"},
     {"while test \"$1\" != -o; do shift; done; echo hello >\"$2\"", "steps.so"},
     {"while test \"$1\" != -o; do shift; done; echo 'int x;' >\"$2.c\"\n"
