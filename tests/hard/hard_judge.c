@@ -120,7 +120,8 @@ static bool is_explained(const hard_subject *s, const hard_result *r) {
 static char *tell_cause(const hard_subject *s, const hard_result *r) {
     largest_rates fastest = {.frequency = r->frequency,
                              .frequency_at = r->fastest_at};
-    char *cause = stability_cause(r->scheme, r->limit, s->dt, &fastest);
+    char *cause =
+        stability_cause(r->scheme, r->limit, s->dt, s->t_end - s->t, &fastest);
     if (cause)
         return cause;
     return text_print(is(s, HARD_EDGE) ? "the orbit meets a singularity, or "
