@@ -96,6 +96,7 @@ libnevh_core_la_SOURCES = \
 	lib/expression/tape_open.c \
 	lib/expression/tape_gradient.c \
 	lib/expression/tape_complex.c \
+	lib/expression/tape_actions.c \
 	lib/expression/tape_rounding.c \
 	lib/expression/tape_special.c \
 	lib/expression/wide_private.h \

@@ -59,6 +59,14 @@ typedef void (*nevh_complex_fn)(double t, const double q[][2],
                                 const double p[][2], const double c[],
                                 const void *params, double h[2]);
 
+/* Tells whether an instance is a function of the actions (s q^2 + p^2/s)/2 of its
+   coordinates alone, for all states; it is only asked of terms with as many momenta.
+   of       of[k]: which of the coordinates has the k-th momentum
+   s        out: the s of each coordinate, positive; 0 where the instance does not
+            depend on it */
+typedef bool (*nevh_actions_fn)(const double c[], const void *params,
+                                const size_t of[], double s[]);
+
 /* A term of H: `count` instances of one function (a spring between each pair
    of neighbours is one term).  It is handed only what it declares to read, so
    a declaration cannot lie; from the declarations follow separability, sparse
@@ -85,6 +93,7 @@ typedef struct {
                                  else found by differences */
     bool curved; /* is known to be no polynomial of degree 2 or less; else its
                     values and derivatives at some states decide */
+    nevh_actions_fn actions; /* NULL: it is no function of actions */
 } nevh_term;
 
 /* Properties of the sum of the enabled terms. */

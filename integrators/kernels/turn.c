@@ -17,20 +17,21 @@ static bool turns_term(const nevh__planned *term) {
 static int turns_find(const nevh_field *f, nevh__turns *x) {
     for (size_t i = 0; i < f->n_terms; i++) {
         const nevh__planned *term = &f->terms[i];
-        size_t nq = term->nq;
-        double *room =
-            turns_term(term)
-                ? nevh__array(nevh__form_room(&term->term->decl) + nq,
-                              sizeof *room)
-                : NULL;
-        if (turns_term(term) && !room)
-            return NEVH_ENOMEM;
+        if (!turns_term(term))
+            continue;
+        double *s = nevh__array(term->nq + 1, sizeof *s);
+        size_t *of = nevh__array(term->nq + 1, sizeof *of);
+        bool room = s && of;
         for (size_t k = 0; room && k < term->term->decl.count; k++) {
-            nevh__turn_find(term->term, k, room, room + nq);
-            for (size_t j = 0; j < nq; j++)
-                x->scale[nevh__index(term, k, j)] = room[j];
+            nevh__turn_find(term->term, k, of, s);
+            for (size_t j = 0; j < term->nq; j++)
+                if (s[j] > 0)
+                    x->scale[nevh__index(term, k, j)] = s[j];
         }
-        free(room);
+        free(s);
+        free(of);
+        if (!room)
+            return NEVH_ENOMEM;
     }
     return NEVH_OK;
 }

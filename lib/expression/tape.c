@@ -72,6 +72,7 @@ void nevh__tape_shape(nevh_term *term, const nevh__tape *tape) {
     term->nc = tape->count[NEVH__C];
     term->time = nevh__tape_reads(tape, NEVH__T, 0);
     term->curved = is_curved(tape);
+    term->actions = nevh__tape_actions;
 }
 
 static bool same_place(const nevh__tape *a, nevh__tape_operand x,

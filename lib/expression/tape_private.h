@@ -177,6 +177,9 @@ void nevh__tape_block_gradient(size_t width, const double t[], const double q[],
                                const double p[], const double c[],
                                const void *tape, double dh_dq[],
                                double dh_dp[]);
+/* Reads the formula as it is written: nevh_actions_fn. */
+bool nevh__tape_actions(const double c[], const void *tape, const size_t of[],
+                        double s[]);
 /* The derivative with respect to t. */
 void nevh__tape_block_time(size_t width, const double t[], const double q[],
                            const double p[], const double c[], const void *tape,

@@ -6,6 +6,7 @@
    differ from one between all states that are tried.  Those at unit vectors give the
    coefficients; at other states, near and far, the derivatives have to be the linear
    functions that follow.  Values of -k/|q| are as they should be at other states.
+   Functions of actions are what terms say of themselves, as formulas do.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "system/parts_private.h"
 #include <float.h>
@@ -292,70 +293,18 @@ bool nevh__pair_find(const nevh__term_entry *term, size_t instance, double *k,
     return *k != 0 && isfinite(*k);
 }
 
-/* The momentum of a coordinate among the variables; nv: it is not read. */
-static size_t momentum_of(const nevh_term *decl, size_t instance, size_t i) {
+bool nevh__turn_find(const nevh__term_entry *term, size_t instance, size_t of[],
+                     double s[]) {
+    const nevh_term *decl = &term->decl;
     const size_t *q = decl->q + instance * decl->nq;
     const size_t *p = decl->p + instance * decl->np;
-    size_t j = 0;
-    while (j < decl->np && p[j] != q[i])
-        j++;
-    return decl->nq + j;
-}
-
-/* s of each coordinate, from derivatives at one state, or 1. */
-static bool find_scales(const trial *x, size_t instance, double s[]) {
-    const nevh_term *decl = &x->term->decl;
-    uint64_t random = 3;
-    spread(x, 0, &random);
-    if (decl->gradient)
-        take_slopes(x, 1);
-    for (size_t i = 0; i < decl->nq; i++) {
-        size_t q = i * NEVH__LANES;
-        size_t p = momentum_of(decl, instance, i) * NEVH__LANES;
-        if (p == x->nv * NEVH__LANES)
-            return false;
-        double square = x->slope[q] / x->z[q] * (x->z[p] / x->slope[p]);
-        s[i] = decl->gradient && fabs(square - 1) > 1e-12 ? sqrt(square) : 1;
-        if (!(s[i] > 0) || !isfinite(s[i]))
-            return false;
+    bool paired = decl->actions && decl->nq == decl->np && !decl->time;
+    for (size_t k = 0; paired && k < decl->np; k++) {
+        for (of[k] = 0; of[k] < decl->nq && q[of[k]] != p[k];)
+            of[k]++;
+        paired = of[k] < decl->nq;
     }
-    return true;
-}
-
-/* Turns each oscillator of each lane by an angle of its own. */
-static void turn_all(const trial *x, size_t instance, const double s[]) {
-    const nevh_term *decl = &x->term->decl;
-    for (size_t i = 0; i < decl->nq; i++)
-        for (size_t lane = 0; lane < NEVH__LANES; lane++) {
-            double angle = 0.3 + (double)(lane + NEVH__LANES * i);
-            double *q = x->z + i * NEVH__LANES + lane;
-            double *p =
-                x->z + momentum_of(decl, instance, i) * NEVH__LANES + lane;
-            double c = cos(angle), d = sin(angle), old = *q;
-            *q = c * old + d * *p / s[i];
-            *p = c * *p - d * old * s[i];
-        }
-}
-
-bool nevh__turn_find(const nevh__term_entry *term, size_t instance, double s[],
-                     double room[]) {
-    static const int powers[] = {-40, -20, -7, 0, 5, 12, 30};
-    double value[NEVH__LANES], distance[NEVH__LANES];
-    uint64_t random = 1;
-    const nevh_term *decl = &term->decl;
-    if (decl->nq != decl->np || !decl->nq || decl->time)
-        return false;
-    trial x = parts_lay_out(term, instance, room);
-    bool fine = find_scales(&x, instance, s);
-    for (size_t i = 0; fine && i < sizeof powers / sizeof *powers; i++) {
-        spread(&x, powers[i], &random);
-        take_values(&x, distance);
-        memcpy(value, x.h, sizeof value);
-        turn_all(&x, instance, s);
-        take_values(&x, distance);
-        for (size_t lane = 0; lane < NEVH__LANES; lane++)
-            fine = fine && fabs(x.h[lane] - value[lane]) <=
-                               roundings * DBL_EPSILON * fabs(value[lane]);
-    }
-    return fine;
+    return paired &&
+           decl->actions(decl->nc ? decl->c + instance * decl->nc : NULL,
+                         decl->params, of, s);
 }

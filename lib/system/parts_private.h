@@ -53,9 +53,10 @@ enum { NEVH__PLANE = 2, NEVH__PAIR = 2 * NEVH__SPACE };
 bool nevh__pair_find(const nevh__term_entry *, size_t instance, double *k,
                      size_t beside[NEVH__PAIR], double room[]);
 /* s of each coordinate of an instance that is a function of (s q^2 + p^2/s)/2 of each
-   alone; false: it is not.  s is 1 where the term brings no derivatives. */
-bool nevh__turn_find(const nevh__term_entry *, size_t instance, double s[],
-                     double room[]);
+   alone, 0 where it does not depend on that; false: it is no such function.
+   of       room for as many */
+bool nevh__turn_find(const nevh__term_entry *, size_t instance, size_t of[],
+                     double s[]);
 /* Finds the terms of B that turn coordinates which no other term of B reads.
    turn     out, one for each term
    returns  NEVH_OK; NEVH_ENOMEM */

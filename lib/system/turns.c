@@ -14,7 +14,7 @@ static const double not_turned = -1;
 static void take_scale(double *scale, double s) {
     if (*scale == 0)
         *scale = s;
-    else if (fabs(*scale - s) > 1e-12 * s)
+    else if (s != 0 && fabs(*scale - s) > 1e-12 * s)
         *scale = not_turned;
 }
 
@@ -26,20 +26,23 @@ static bool kicks(const nevh_system *s, const nevh__part_role part[],
 /* turn: whether all instances turn; marks their coordinates, or those of others. */
 static int mark_term(const nevh__term_entry *term, double scale[], bool *turn) {
     const nevh_term *decl = &term->decl;
-    double *room = nevh__array(nevh__form_room(decl) + decl->nq, sizeof *room);
+    double *s = nevh__array(decl->nq + 1, sizeof *s);
+    size_t *of = nevh__array(decl->np + 1, sizeof *of);
+    bool room = s && of;
     *turn = decl->np > 0;
     for (size_t k = 0; room && *turn && k < decl->count; k++)
-        *turn = nevh__turn_find(term, k, room, room + decl->nq);
+        *turn = nevh__turn_find(term, k, of, s);
     for (size_t k = 0; room && k < decl->count; k++) {
         if (*turn)
-            nevh__turn_find(term, k, room, room + decl->nq);
+            nevh__turn_find(term, k, of, s);
         for (size_t i = 0; i < decl->nq; i++)
             take_scale(&scale[decl->q[k * decl->nq + i]],
-                       *turn ? room[i] : not_turned);
+                       *turn ? s[i] : not_turned);
         for (size_t i = 0; !*turn && i < decl->np; i++)
             scale[decl->p[k * decl->np + i]] = not_turned;
     }
-    free(room);
+    free(s);
+    free(of);
     return room ? NEVH_OK : NEVH_ENOMEM;
 }
 
@@ -58,7 +61,7 @@ int nevh__turns_choose(const nevh_system *s, const nevh__part_role part[],
     for (size_t i = 0; !status && i < s->n_terms; i++) {
         const nevh_term *decl = &s->terms[i]->decl;
         for (size_t k = 0; turn[i] && k < decl->count * decl->nq; k++)
-            turn[i] = scale[decl->q[k]] > 0;
+            turn[i] = scale[decl->q[k]] != not_turned;
     }
     free(scale);
     return status;

@@ -406,14 +406,18 @@ static nevh_scene *lattice(const char *more) {
 
 /* B that is a function of actions alone is turned: schemes have their order, and the orbit
    is that of Gauss. */
-TEST_EACH(turns, 6) {
+TEST_EACH(turns, 10) {
     static const char *const turned[] = {
         "b = 0.1*(x^2 + p_x^2)^2",
         "b = 0.1*(x^2 + p_x^2)^2*sqrt(4*y^2 + p_y^2)",
         "b = 0.1*sqrt(1 + (4*y^2 + p_y^2)/3)\nwave = 0.1*cos(x)",
         "b = 0.1*exp(-(x^2 + p_x^2))\ndrive = 0.1*y*cos(0.7*t)",
         "b = 0.1*(4*y^2 + p_y^2)^1.5\nwave = 0.1*sin(x)",
-        "b = 0.1*(9*x^2 + p_x^2/9)^2\nb2 = 0.1*sqrt(81*x^2 + p_x^2)"};
+        "b = 0.1*(9*x^2 + p_x^2/9)^2\nb2 = 0.1*sqrt(81*x^2 + p_x^2)",
+        "b = 0.1*log(1 + x^2 + p_x^2)*hypot(2*y, p_y)",
+        "b = 0.01*exp(x^2 + p_x^2)",
+        "b = 0*(4*x^2 + p_x^2)^2\nb2 = 0.1*(4*x^2 + p_x^2)^2",
+        "b = 0.1*sin((x^2 + p_x^2)/2 - (4*y^2 + p_y^2)/3)^2"};
     nevh_scene *s = lattice(turned[_i]);
     const nevh_system *system = nevh_scene_system(s);
     state start = fast_parts[0].start;
@@ -445,14 +449,17 @@ TEST(turns_are_exact) {
 }
 
 /* B that reads the coordinate otherwise, too, or another function of q and p. */
-TEST_EACH(turns_refused, 6) {
+TEST_EACH(turns_refused, 9) {
     static const char *const wrong[] = {
         "b = 0.1*(x^2 + p_x^2)^2\nwave = 0.1*cos(x + y)",
         "b = 0.1*(x^2 + p_x^2)^2\nc = 0.1*(x^2 + 1.001*p_x^2)^2",
         "b = 0.1*(x^2 + p_y^2)^2",
         "b = 0.1*(x^2 + p_x^2)^2*(1 + 1e-9*x)",
         "b = 0.1*(x^2 + p_x^2)^2*cos(t)",
-        "b = 0.1*(x^2 + p_x^2 + x*p_x)^2"};
+        "b = 0.1*(x^2 + p_x^2 + x*p_x)^2",
+        "b = 0.1*(x^2 + p_x^2)^2*(1 + 0.3*exp(-(50*(x - 1.6))^2))",
+        "b = 0.1*(x^2 + p_x^2)^2*(1 + 0.3*tanh(50*(x - 1.6))/cosh(50*(x - 1.6))^2)",
+        "b = 0.1*(x^2 - p_x^2)^2"};
     nevh_scene *s = lattice(wrong[_i]);
     nevh_stepper *stepper = stepper_of(nevh_scene_system(s), nevh_aba864);
     ck_assert_int_eq(nevh_stepper_status(stepper), NEVH_ESTRUCT);
