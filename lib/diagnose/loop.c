@@ -2,7 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/loop_private.h"
 #include <fenv.h>
-#include <gsl/gsl_integration.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,24 +38,25 @@ static void legendre_values(double x, double value[]) {
             ((2 * k - 1) * x * value[k - 1] - (k - 1) * value[k - 2]) / k;
 }
 
-/* Sums over the nodes are exact for products of two of the polynomials. */
-static int plan_nodes(nevh_loop *l) {
-    void *ask =
-        nevh__array(4 * NEVH__NODES, sizeof(double)); /* GSL would abort */
-    free(ask);
-    gsl_integration_glfixed_table *t =
-        ask ? gsl_integration_glfixed_table_alloc(NEVH__NODES) : NULL;
-    if (!t)
-        return nevh__no_memory(&l->report);
-    for (size_t j = 0; j < NEVH__NODES; j++) {
-        double weight, value[NEVH__NODES];
-        gsl_integration_glfixed_point(-1, 1, j, &l->node[j], &weight, t);
+/* Gauss-Lobatto nodes: the ends, and the zeros of P'_{N-1}, by Newton's method with
+   (1 - x^2) P'' = 2 x P' - (N-1) N P.  Sums over them are exact for products of two
+   of the polynomials, but for the last one's with itself. */
+static void plan_nodes(nevh_loop *l) {
+    enum { LAST = NEVH__NODES - 1, ROUNDS = 8 };
+    for (int j = 0; j < NEVH__NODES; j++) {
+        double x = -cos(acos(-1) * j / LAST), value[NEVH__NODES];
+        for (int i = 0; j > 0 && j < LAST && i < ROUNDS; i++) {
+            legendre_values(x, value);
+            x -= (x * value[LAST] - value[LAST - 1]) /
+                 (NEVH__NODES * value[LAST]);
+        }
+        l->node[j] = j == 0 ? -1 : j == LAST ? 1 : x;
         legendre_values(l->node[j], value);
         for (int k = 0; k < NEVH__NODES; k++)
-            l->legendre[k][j] = (k + 0.5) * weight * value[k];
+            l->legendre[k][j] =
+                (k < LAST ? 2 * k + 1 : LAST) * value[k] /
+                (LAST * NEVH__NODES * value[LAST] * value[LAST]);
     }
-    gsl_integration_glfixed_table_free(t);
-    return NEVH_OK;
 }
 
 static bool is_loop(const nevh_loop_options *o) {
@@ -121,17 +121,18 @@ static int plan_corners(nevh_loop *l) {
 static void loop_lay_out(nevh__arena *a, void *loop) {
     nevh_loop *l = loop;
     size_t times = l->options.times, n = l->n;
-    double **const numbers[] = {&l->taken_area, &l->taken_error, &l->unit,
-                                &l->area,       &l->error,       &l->noise};
+    double **const numbers[] = {
+        &l->taken_area, &l->taken_error, &l->taken_noise, &l->unit,
+        &l->area,       &l->error,       &l->noise};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
         *numbers[i] = nevh__arena_take(a, times, sizeof(double));
     l->q = nevh__arena_take(a, n * NEVH__NODES, sizeof(double));
     l->p = nevh__arena_take(a, n * NEVH__NODES, sizeof(double));
     l->centre = nevh__arena_take(a, times * n, sizeof(double));
+    l->level = nevh__arena_take(a, times * 2 * n, sizeof(double));
     l->low = nevh__arena_take(a, times * 2 * n, sizeof(double));
     l->high = nevh__arena_take(a, times * 2 * n, sizeof(double));
     l->rough = nevh__arena_take(a, times, sizeof *l->rough);
-    l->taken_noise = nevh__arena_take(a, times, sizeof(bool));
     l->inside = nevh__arena_take(a, times, sizeof(bool));
 }
 
@@ -151,8 +152,9 @@ nevh_loop *nevh_loop_new(const nevh_system *s, const nevh_integrator *scheme,
     l->options = *loop;
     l->n = nevh_system_dof(s);
     l->keeps = keeps_states(l);
+    plan_nodes(l);
     if (!loop_check_options(l, o, scheme) && !plan_corners(l) &&
-        !loop_plan_memory(l) && !plan_nodes(l))
+        !loop_plan_memory(l))
         plan_stepper(l, s, scheme, *o);
     return l;
 }
@@ -231,10 +233,8 @@ static int find_units(nevh_loop *l, const nevh__queue *all) {
 static int loop_accept(nevh_loop *l, nevh__panel at) {
     for (size_t i = 0; i < l->reach; i++) {
         l->area[i] += l->taken_area[i];
-        if (l->taken_noise[i])
-            l->noise[i] += l->taken_error[i] * l->taken_error[i];
-        else
-            l->error[i] += l->taken_error[i];
+        l->error[i] += l->taken_error[i];
+        l->noise[i] += l->taken_noise[i] * l->taken_noise[i];
     }
     if (l->options.shapes) {
         nevh__panel *more = nevh__grow(l->shape, l->panels + 1, sizeof *more);
@@ -314,6 +314,21 @@ static int cut_all(nevh_loop *l) {
     return status;
 }
 
+/* Finds the level of noise by some panels that are all but points. */
+static int find_noise(nevh_loop *l, const nevh__queue *all) {
+    enum { PLACES = 4 };
+    static const double short_of = 0x1p-14;
+    for (size_t i = 0; i < PLACES; i++) {
+        nevh__panel at = all->item[i * all->count / PLACES];
+        at.to = at.from + short_of * (at.to - at.from);
+        int status = nevh__loop_follow(l, &at, nevh__loop_listen);
+        free(at.states);
+        if (status)
+            return status;
+    }
+    return NEVH_OK;
+}
+
 static int loop_begin(nevh_loop *l) {
     nevh__queue all = {0};
     int status = NEVH_OK;
@@ -324,6 +339,8 @@ static int loop_begin(nevh_loop *l) {
                          (nevh__panel){.from = from + length * i / PIECES,
                                        .to = from + length * (i + 1) / PIECES});
         }
+    if (!status)
+        status = find_noise(l, &all);
     if (!status)
         status = find_units(l, &all);
     while (!status && all.front < all.count)

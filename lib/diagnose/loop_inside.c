@@ -29,7 +29,7 @@ static void plan_slopes(inside *x) {
             double next = ((2 * k - 1) * at * value - (k - 1) * before) / k;
             before = value;
             value = next;
-            x->slope[j][k] = k * (at * value - before) / (at * at - 1);
+            x->slope[j][k] = x->slope[j][k - 2] + (2 * k - 1) * before;
         }
     }
 }

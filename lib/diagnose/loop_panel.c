@@ -5,7 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TAIL = 3 }; /* coefficients whose size tells the error */
+enum {
+    TAIL = 3, /* coefficients whose size tells the error */
+    HALF = NEVH__NODES / 2
+};
 static const double tolerance = 1e-11; /* of a panel, of the area's unit */
 
 void nevh__loop_expand(const nevh_loop *l, const double value[], double from,
@@ -57,38 +60,58 @@ static double loop_panel_product(const double a[], int na, const double b[],
     return sum;
 }
 
-/* The error that the last coefficients of either leave. */
-static double tail_of(const double a[], const double b[]) {
+/* The errors of the integral that come from those of the series, of levels `of_a` and
+   `of_b`, through coefficients from `first` on. */
+static double carried_by(double of_a, double of_b, const double a[],
+                         const double b[], int first) {
     double sum_a = 0, sum_b = 0;
-    for (int k = 1; k < NEVH__NODES; k++) {
+    for (int k = first; k < NEVH__NODES; k++) {
         sum_a += fabs(a[k]);
         sum_b += fabs(b[k]);
     }
-    return 2 * (loop_panel_largest(a, NEVH__NODES - TAIL, NEVH__NODES) * sum_b +
-                loop_panel_largest(b, NEVH__NODES - TAIL, NEVH__NODES) * sum_a);
+    return 2 * (of_a * sum_b + of_b * sum_a);
+}
+
+/* The panel's integral of one q dp, and its errors.  Nodes include the ends, so that
+   the series of neighbours meet, and sums over the nodes are exact to degree
+   2 NEVH__NODES - 3: what a series leaves out meets only the upper half of the
+   other one. */
+static void loop_panel_add(nevh_loop *l, size_t time, size_t k) {
+    double a[NEVH__NODES], b[NEVH__NODES];
+    const double *level = l->level + (time * l->n + k) * 2;
+    nevh__loop_expand(l, l->q + k * NEVH__NODES, l->centre[time * l->n + k], a);
+    nevh__loop_expand(l, l->p + k * NEVH__NODES, 0, b);
+    double of_a = loop_panel_largest(a, NEVH__NODES - TAIL, NEVH__NODES);
+    double of_b = loop_panel_largest(b, NEVH__NODES - TAIL, NEVH__NODES);
+    if (is_noise(a) && is_noise(b)) {
+        l->taken_area[time] += loop_panel_product(a, loop_panel_length_of(a), b,
+                                                  loop_panel_length_of(b));
+        l->taken_noise[time] += carried_by(of_a, of_b, a, b, 1);
+        return;
+    }
+    l->taken_area[time] += loop_panel_product(a, NEVH__NODES, b, NEVH__NODES);
+    l->taken_error[time] += carried_by(of_a, of_b, a, b, HALF);
+    l->taken_noise[time] +=
+        carried_by(fmin(of_a, level[0]), fmin(of_b, level[1]), a, b, 1);
 }
 
 /* The panel as it is. */
 static void loop_panel_integrate(nevh_loop *l, size_t time) {
-    double sum = 0, tail = 0;
-    bool noise = true;
-    for (size_t k = 0; k < l->n; k++) {
-        double a[NEVH__NODES], b[NEVH__NODES], own;
-        nevh__loop_expand(l, l->q + k * NEVH__NODES, l->centre[time * l->n + k],
-                          a);
-        nevh__loop_expand(l, l->p + k * NEVH__NODES, 0, b);
-        own = tail_of(a, b);
-        noise = noise && (own <= tolerance * l->unit[time] ||
-                          (is_noise(a) && is_noise(b)));
-        sum += is_noise(a) && is_noise(b)
-                   ? loop_panel_product(a, loop_panel_length_of(a), b,
-                                        loop_panel_length_of(b))
-                   : loop_panel_product(a, NEVH__NODES, b, NEVH__NODES);
-        tail += own;
+    l->taken_area[time] = l->taken_error[time] = l->taken_noise[time] = 0;
+    for (size_t k = 0; k < l->n; k++)
+        loop_panel_add(l, time, k);
+}
+
+bool nevh__loop_listen(nevh_loop *l, size_t time) {
+    static const double margin = 4;
+    for (size_t i = 0; i < 2 * l->n; i++) {
+        double c[NEVH__NODES], *level = l->level + time * 2 * l->n + i;
+        const double *from = (i % 2 ? l->p : l->q) + i / 2 * NEVH__NODES;
+        nevh__loop_expand(l, from, from[0], c);
+        *level =
+            fmax(*level, margin * loop_panel_largest(c, HALF, NEVH__NODES));
     }
-    l->taken_area[time] = sum;
-    l->taken_error[time] = tail;
-    l->taken_noise[time] = noise;
+    return true;
 }
 
 int nevh__loop_place(nevh_loop *l, const nevh__panel *at) {
@@ -189,8 +212,7 @@ bool nevh__loop_integrate(nevh_loop *l, size_t time) {
 }
 
 static bool is_smooth(const nevh_loop *l, size_t time) {
-    return l->taken_error[time] <= tolerance * l->unit[time] ||
-           l->taken_noise[time];
+    return l->taken_error[time] <= tolerance * l->unit[time];
 }
 
 /* Up to the first time at which it must be cut. */
@@ -200,11 +222,11 @@ bool nevh__loop_integrate_smooth(nevh_loop *l, size_t time) {
     return is_smooth(l, time);
 }
 
-/* Halves have errors that are 2^-14 of those of the whole at best: where that is too
-   much they need not be tried. */
-static size_t parts_for(const nevh_loop *l, double certain, size_t parts) {
+/* The parts that have errors small enough, at least `parts`, where those of halves
+   are `halved` times as large. */
+static size_t parts_for(const nevh_loop *l, double certain, double halved,
+                        size_t parts) {
     enum { MOST = 16 };
-    static const double halved = 0x1p-14;
     double error = l->taken_error[l->taken_times];
     double most = certain * l->unit[l->taken_times];
     for (size_t done = 1; done < parts; done *= 2)
@@ -214,10 +236,14 @@ static size_t parts_for(const nevh_loop *l, double certain, size_t parts) {
     return parts;
 }
 
+/* Halves of what is resolved well have errors that are 2^-11 of those of the whole in
+   the one series, and 2^-7 in the other. */
 size_t nevh__loop_parts(const nevh_loop *l) {
-    return parts_for(l, tolerance, 2);
+    return parts_for(l, tolerance, 0x1p-18, 2);
 }
 
+/* Panels of large errors have series that hardly fall yet, and halves that gain
+   less. */
 size_t nevh__loop_least_parts(const nevh_loop *l) {
-    return parts_for(l, NEVH__LOOP_CERTAIN, 1);
+    return parts_for(l, NEVH__LOOP_CERTAIN, 0x1p-14, 1);
 }

@@ -33,16 +33,19 @@ struct nevh_loop {
     void *memory;    /* of arrays, but for corners, steps and shape */
     double *corners; /* n_corners and 1 more: the first once again */
     size_t *steps;
-    double node[NEVH__NODES]; /* in (-1, 1) */
+    double node[NEVH__NODES]; /* in [-1, 1] */
     double legendre[NEVH__NODES]
                    [NEVH__NODES]; /* [k][j]: from value j to coefficient k */
     double *q, *p;                /* NEVH__NODES x n */
-    double *taken_area, *taken_error; /* times: of the panel at hand */
-    double *centre;                   /* n x times: taken from q */
-    double *unit;                     /* times: of areas */
-    double *low, *high;               /* 2n x times: where the curve is */
-    double *area, *error, *noise;     /* times; noise: a sum of squares */
-    bool *taken_noise, *inside; /* times; inside: by nevh__loop_look_inside */
+    /* Times: of the panel at hand; errors that are the series', and that are noise,
+       of rounding or of differences. */
+    double *taken_area, *taken_error, *taken_noise;
+    double *level;      /* 2n x times: noise of coefficients of q, p of each */
+    double *centre;     /* n x times: taken from q */
+    double *unit;       /* times: of areas */
+    double *low, *high; /* 2n x times: where the curve is */
+    double *area, *error, *noise; /* times; noise: a sum of squares */
+    bool *inside;                 /* times: by nevh__loop_look_inside */
     nevh__panel *shape;
     nevh__queue *rough; /* times: panels that are first too rough there */
     size_t panels;      /* that were accepted */
@@ -63,8 +66,10 @@ int nevh__loop_place(nevh_loop *, const nevh__panel *);
 /* Expands values over a panel, less `from`, in a series. */
 void nevh__loop_expand(const nevh_loop *, const double value[], double from,
                        double coefficient[]);
-/* Functions for nevh__loop_follow: the extent of the curve; areas and errors; the
-   same up to the first time at which the panel must be cut. */
+/* Functions for nevh__loop_follow: the level of noise, of a panel so short that its
+   series ends halfway; the extent of the curve; areas and errors; the same up to
+   the first time at which the panel must be cut. */
+bool nevh__loop_listen(nevh_loop *, size_t time);
 bool nevh__loop_measure(nevh_loop *, size_t time);
 bool nevh__loop_integrate(nevh_loop *, size_t time);
 bool nevh__loop_integrate_smooth(nevh_loop *, size_t time);
