@@ -33,9 +33,37 @@ static double least_work(const recommendation *a) {
 /* Times may tell otherwise than work: a factor of 2, at most. */
 static const double nearly = 2.5;
 
+/* The work at the target, by the last level: where errors fall with `orders` times
+   the order of the scheme. */
+static double expected_work(const recommendation *a, const study *l,
+                            double orders) {
+    const row *last = &l->level[l->count - 1];
+    double over = study_error(last) / a->target;
+    double order = fmax(nevh_integrator_order(l->scheme), 1);
+    return isfinite(over)
+               ? last->work * pow(fmax(over, 1), 1 / (orders * order))
+               : last->work;
+}
+
 /* A shorter step costs more, but for the sweeps that it saves. */
 static bool is_hopeless(const recommendation *a, const study *l) {
-    return l->level[l->count - 1].work > nearly * least_work(a);
+    static const double steep = 2; /* errors may fall faster for a while */
+    return expected_work(a, l, steep) > nearly * least_work(a);
+}
+
+/* The open study that should reach the target first; NULL: there is none. */
+static study *descend_next(const recommendation *a) {
+    study *next = NULL;
+    double least = INFINITY;
+    for (size_t i = 0; i < a->count; i++) {
+        study *l = &a->study[i];
+        double work = l->end == STUDY_OPEN ? expected_work(a, l, 1) : NAN;
+        if (work < least || (!next && l->end == STUDY_OPEN)) {
+            least = work;
+            next = l;
+        }
+    }
+    return next;
 }
 
 static void descend(recommendation *a) {
@@ -43,8 +71,7 @@ static void descend(recommendation *a) {
     study *next;
     for (size_t i = 0; i < a->count; i++)
         study_begin(&a->search, &a->study[i]);
-    while ((next = study_next(a->study, a->count)) &&
-           !search_is_over(&a->search, share))
+    while ((next = descend_next(a)) && !search_is_over(&a->search, share))
         if (recommend_keeps(a, next) || is_hopeless(a, next))
             next->end = STUDY_LIMIT;
         else
@@ -174,23 +201,44 @@ static size_t list_best(const recommendation *a, double factor, bool gradients,
     return count;
 }
 
-/* Other gradients for the best few schemes: they change the price of a step,
-   and where errors end, but hardly the step that is needed. */
+/* The least work that keeps the target without the exact gradient. */
+static double least_by_values(const recommendation *a) {
+    double least = INFINITY;
+    for (size_t i = 0; i < a->count; i++) {
+        const study *l = &a->study[i];
+        const row *r = recommend_keeps(a, l);
+        if (r && study_takes_gradients(l) && strcmp(l->gradient, "exact") != 0)
+            least = fmin(least, r->work);
+    }
+    return least;
+}
+
+/* Other gradients for the best few schemes: they change the price of a step, and
+   where errors end, but hardly the step that is needed.  What they change the price
+   by, the first scheme tells: with others only those are run that may be cheaper. */
 static void vary_gradients(recommendation *a) {
     enum { FEW = 10 };
-    static const double factor = 2.2;
+    static const double factor = 2.2, margin = 1.3;
     study *found[FEW], model[FEW];
     int k[FEW];
+    double work[FEW], *price = tool_allocate(a->gradients.count, sizeof *price);
     size_t count = list_best(a, factor, true, found, FEW);
     for (size_t i = 0; i < count; i++) {
+        const row *r = recommend_keeps(a, found[i]);
         model[i] = *found[i];
-        k[i] = found[i]->k[recommend_keeps(a, found[i]) - found[i]->level];
+        k[i] = found[i]->k[r - found[i]->level];
+        work[i] = r->work;
     }
     for (size_t i = 0; i < count; i++)
-        for (size_t g = 1; g < a->gradients.count; g++)
-            if (!search_is_over(&a->search, 1))
-                add_study(
-                    a, with_gradient(a, &model[i], k[i], a->gradients.item[g]));
+        for (size_t g = 1; g < a->gradients.count; g++) {
+            if (search_is_over(&a->search, 1) ||
+                (i && !(price[g] * work[i] <= margin * least_by_values(a))))
+                continue;
+            study l = with_gradient(a, &model[i], k[i], a->gradients.item[g]);
+            if (i == 0)
+                price[g] = l.level[0].work / work[0];
+            add_study(a, l);
+        }
 }
 
 /* The steps of those that may win, to the last place. */
