@@ -152,7 +152,8 @@ typedef struct {
    max > limit   UNDECIDED for theory LOSES where the energies met grow a
                  hundredfold, faster than any drift, and the error is below 10 % of
                  them; else UNSTABLE for it, or beyond all measure; else, once
-                 times >= 16, BOUNDED where the error comes back and is level,
+                 times >= 16, BOUNDED where the error comes back, also within
+                 the last fifth, and is level,
                  UNDECIDED where a drive of OPEN has brought more energy than
                  the error and relative to that it is level, else UNSTABLE
    max at rounding: BOUNDED, or where it grows RANDOM_WALK, once times >= 16; along
@@ -166,6 +167,7 @@ typedef struct {
                  along a line that lasts (of KEEPS, one that the gradients may
                  bring, of OPEN and ROUGH with a straightness above 0.95),
                  RANDOM_WALK where growth is slower and lasts
+                 KEEPS is UNDECIDED where a jump stays (nevh_energy_stays)
    NONE          BOUNDED as for OPEN, DRIFTS along a line, else RANDOM_WALK, of
                  the run as it is
    UNDECIDED     unless BOUNDED, where more than half of the largest error is of
@@ -181,6 +183,11 @@ NEVH_API nevh_verdict nevh_energy_verdict(const nevh_energy_report *,
 /* True if the errors come from steps that pass over changes of H in time, not from
    the scheme; false for NULL.  Thread-safe. */
 NEVH_API bool nevh_energy_passes_over(const nevh_energy_report *);
+/* True if the error, above 3 % of the limit where theory KEEPS it, never comes back and
+   is the same number, to 1 %, throughout the last fifth, as after a collision: the
+   verdict is not BOUNDED, for nothing tells what a second one would add.  False for
+   NULL.  Thread-safe. */
+NEVH_API bool nevh_energy_stays(const nevh_energy_report *);
 
 /* About how many seconds of a processor of 2020 that many evaluations of formulas
    and steps take, by a model: what is decided by it is decided alike on all

@@ -92,7 +92,8 @@ static bool has_ended(const nevh_energy_report *r, double times) {
 static nevh_verdict judge_last(const longer_run *l, double times) {
     const nevh_energy_report *r = &l->report;
     nevh_verdict verdict = nevh_energy_verdict(r, INFINITY);
-    bool keeps = r->theory == NEVH_THEORY_KEEPS && r->max <= r->limit;
+    bool keeps = r->theory == NEVH_THEORY_KEEPS && r->max <= r->limit &&
+                 !nevh_energy_stays(r);
     bool level = is_confirmed(l, times) || has_ended(r, times);
     if (verdict == NEVH_BOUNDED && !level)
         return NEVH_UNDECIDED;

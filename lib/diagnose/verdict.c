@@ -86,10 +86,15 @@ static bool adds_up(const nevh_energy_report *r) {
     return r->theory == NEVH_THEORY_OPEN && r->grown <= some && is_line(r);
 }
 
-/* An error that large comes back where the orbit is still of use. */
+/* An error that large comes back where the orbit is still of use: among those of the end
+   there are small ones.  One that stays where an encounter left it does not. */
+static bool comes_back(const nevh_energy_report *r) {
+    double end = fmax(r->last_fifth, coarse * r->limit);
+    return r->least <= lasting * fmin(end, r->max);
+}
+
 static nevh_verdict judge_large(const nevh_energy_report *r, double times) {
     static const double hopeless = 1e6, much = 10;
-    bool returns = r->least <= lasting * r->max;
     bool huge = r->max > much * r->limit;
     if (is_outgrown(r))
         return NEVH_UNDECIDED;
@@ -98,7 +103,7 @@ static nevh_verdict judge_large(const nevh_energy_report *r, double times) {
     if (times < (huge ? 2 * lasted : lasted))
         return NEVH_UNDECIDED;
     bool level = huge ? r->max <= 1.05 * r->early : is_flat(r, 1.25);
-    if (returns && level)
+    if (comes_back(r) && level)
         return NEVH_BOUNDED;
     if (adds_up(r))
         return NEVH_DRIFTS;
@@ -149,6 +154,15 @@ static double needed(const nevh_energy_report *r, double times) {
     return is_level(r) ? 1 : ended;
 }
 
+/* The motion has left the place where its energy is lost, as after a collision, and says
+   nothing of what a second one would do. */
+bool nevh_energy_stays(const nevh_energy_report *r) {
+    static const double alike = 0.99;
+    return r && r->theory == NEVH_THEORY_KEEPS && r->max > coarse * r->limit &&
+           r->max > r->rounding && r->least > lasting * r->max &&
+           r->least > alike * r->last_fifth;
+}
+
 static nevh_verdict judge_kept(const nevh_energy_report *r, double times) {
     bool keeps = r->theory == NEVH_THEORY_KEEPS;
     bool line = !keeps && is_line(r);
@@ -157,6 +171,8 @@ static nevh_verdict judge_kept(const nevh_energy_report *r, double times) {
     bool flat = is_flat(r, large ? of_large : growth_allowed);
     bool level = large || !keeps ? flat : is_level(r);
     bool ending = !large && keeps && r->rate[0] < nearly_ended;
+    if (nevh_energy_stays(r))
+        return NEVH_UNDECIDED;
     if (!line && (level || ending))
         return times < needed(r, times) ? NEVH_UNDECIDED : NEVH_BOUNDED;
     if (times < lasted)

@@ -96,6 +96,45 @@ TEST(theories) {
     ck_assert_str_eq(nevh_verdict_name(NEVH_UNDECIDED), "undecided");
 }
 
+static double peak, rest;
+static double collision(double t) {
+    double since = t - 30;
+    return peak * exp(-since * since) + (since > 0 ? rest : 0);
+}
+/* A scheme that takes the collision apart again and again. */
+static double collisions(double t) {
+    double since = fmod(t, 60) - 30;
+    return peak * exp(-since * since);
+}
+
+/* The energy of one collision is never made good, and the motion ends there: whether it
+   is above the limit or part of it, no length of the run makes it bounded. */
+TEST(one_jump_that_stays) {
+    static const struct {
+        double peak, rest;
+        nevh_verdict verdict;
+    } jumps[] = {
+        {39, 3.8, NEVH_UNSTABLE}, {7, 1.1, NEVH_UNSTABLE},
+        {0, 20, NEVH_UNSTABLE},   {39, 0.1, NEVH_UNSTABLE},
+        {0, 0.5, NEVH_UNDECIDED}, {0.02, 0.3, NEVH_UNDECIDED},
+        {0, 0.01, NEVH_BOUNDED},  {39, 1e-3, NEVH_BOUNDED},
+    };
+    for (size_t i = 0; i < sizeof jumps / sizeof *jumps; i++) {
+        peak = jumps[i].peak;
+        rest = jumps[i].rest;
+        nevh_energy_report r = report_on(collision, 4000);
+        ck_assert_msg(judge(r, NEVH_THEORY_KEEPS, 64) == jumps[i].verdict,
+                      "%g, %g: %s", peak, rest,
+                      nevh_verdict_name(judge(r, NEVH_THEORY_KEEPS, 64)));
+        ck_assert_int_eq(nevh_energy_stays(&r), 0);
+        r.theory = NEVH_THEORY_KEEPS;
+        ck_assert_int_eq(nevh_energy_stays(&r), peak < 1 && rest > 0.03);
+        peak = jumps[i].peak + jumps[i].rest;
+        r = report_on(collisions, 4000);
+        ck_assert_int_eq(judge(r, NEVH_THEORY_KEEPS, 64), NEVH_BOUNDED);
+    }
+}
+
 /* Nothing was seen: nothing is said. */
 TEST(nothing_seen) {
     nevh_system *s = nevh_system_from(1, coordinate, NULL);

@@ -52,6 +52,7 @@ static nevh_separability separability;
     X(STATUS, nevh_energy_book, (NULL, NULL))                                  \
     X(REAL, nevh_energy_passed, (NULL, NULL))                                  \
     X(NUMBER, nevh_energy_passes_over, (NULL))                                 \
+    X(NUMBER, nevh_energy_stays, (NULL))                                       \
     X(STATUS, nevh_energy_set_scale, (NULL, 0.1))                              \
     X(STATUS, nevh_energy_observe, (NULL, 0, 0.1, in, in))                     \
     X(STATUS, nevh_energy_expect, (NULL, NULL))                                \

@@ -81,6 +81,13 @@ void verdict_open_words(const plan *p, const row rows[], size_t count,
                    "%.1e, is that of steps which pass over the change, not "
                    "of the scheme; take a shorter step.",
                    subject, r->energy.max);
+    else if (nevh_energy_stays(&r->energy) && nevh_energy_stays(e))
+        list_print(words,
+                   "%s: the energy error, up to %.1e, does not change in the "
+                   "last fifth of the run, where the motion has left the "
+                   "place that made it: whether a second passage adds to it "
+                   "is not known; take a shorter step.",
+                   subject, r->energy.max);
     else if (is_carried(r, e))
         list_print(
             words,
