@@ -5,11 +5,15 @@
 #include <math.h>
 #include <string.h>
 
-/* Above a bound of rounding that walks of four standard deviations keep. */
 static bool measures_order(const row *r) {
-    static const double above = 1.5;
     return r->ran && r->energy.verdict != NEVH_UNSTABLE && r->tolerance == 0 &&
-           r->energy.max > fmax(1e-13, above * r->energy.rounding);
+           r->energy.max > 1e-13;
+}
+
+/* Above a bound of rounding that walks of four standard deviations keep. */
+static bool is_clear(const row *r) {
+    static const double above = 1.5;
+    return r->energy.max > above * r->energy.rounding;
 }
 
 bool steps_are_close(double a, double b) {
@@ -26,16 +30,20 @@ static bool is_same(const row *a, const row *b) {
     return a->integrator == b->integrator && a->gradient == b->gradient;
 }
 
-/* The slope from the row of the same scheme and the dt before; NAN where there is none. */
+/* The slope from the row of the same scheme and the dt before; NAN where there is none.
+   What rounding may have made is a slope only where it is that of the scheme's order:
+   rounding does not fall with dt. */
 static double slope_before(const row rows[], size_t i) {
     const row *b = &rows[i];
     for (size_t k = i; k-- > 0;) {
         const row *a = &rows[k];
         if (!is_same(a, b) || steps_are_close(a->dt, b->dt))
             continue;
-        return measures_order(a) && measures_order(b) && a->dt != b->dt
-                   ? log(a->energy.max / b->energy.max) / log(a->dt / b->dt)
-                   : NAN;
+        if (!measures_order(a) || !measures_order(b) || a->dt == b->dt)
+            return NAN;
+        double slope = log(a->energy.max / b->energy.max) / log(a->dt / b->dt);
+        bool clear = is_clear(a) && is_clear(b);
+        return clear || orders_agree(slope, b->order) ? slope : NAN;
     }
     return NAN;
 }
