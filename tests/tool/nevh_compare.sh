@@ -38,6 +38,12 @@ holds observed_order '$1 > 5.9 && $1 < 6.1'
 exits 0 compare kepler --t-end 20 --integrators yoshida6 --gradient central4 \
     --dt 0.03,0.015,0.0075 --format csv
 holds observed_order '$1 > 5.9 && $1 < 6.1 && $2 > 5.9 && $2 < 6.1'
+# The drift over the run is no larger than the largest error of the same row.
+printf '[coordinates]\nx = 5, -1\n[effects]\nkinetic = p_x^2/2\nV = -20/cosh(5*x)^2
+[run]\nt_end = 12\ndt = 0.1\nintegrators = verlet, yoshida4, blanes-moan4\n' >$work/well.nevh
+exits 0 compare $work/well.nevh
+awk '$NF == "unstable" { if ($6 * $6 > 1.0001 * $5 * $5) exit 1; n++ } END { exit n != 3 }' \
+    $work/out || { fails "a drift above the largest error"; cat $work/out; }
 # A slope that no neighbour agrees with is none.
 exits 0 compare kepler --integrators rkn6b --dt 0.1,0.07,0.05,0.035,0.025 --t-end 7 \
     --format csv

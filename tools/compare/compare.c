@@ -1,5 +1,6 @@
 /* nevh compare: a table of energy errors, a row an integrator and dt.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "verdict_private.h"
 #include "cli/commands.h"
 #include "experiment/envelope.h"
 #include "experiment/trial_run.h"
@@ -71,10 +72,9 @@ static void show_count(table *t, double count) {
 }
 
 static void show_numbers(table *t, const plan *p, const row *r) {
-    double span = r->t_end - p->run->t_start;
     table_shown(t, "%.1e", r->energy.max);
     if (r->energy.verdict == NEVH_DRIFTS || r->energy.verdict == NEVH_UNSTABLE)
-        table_shown(t, "%+.1e", r->energy.drift * span);
+        table_shown(t, "%+.1e", verdict_drift(p, r));
     else
         table_shown(t, "-");
     state_show(t, p, r);

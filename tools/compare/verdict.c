@@ -144,15 +144,19 @@ static char *slope_of(const plan *p, const nevh_energy_report *e) {
                       e->drift_error, p->per_unit, e->straightness);
 }
 
+double verdict_drift(const plan *p, const row *r) {
+    double drift = r->energy.drift * (r->t_end - p->run->t_start);
+    return copysign(fmin(fabs(drift), r->energy.max), drift);
+}
+
 static void line_words(const plan *p, const row rows[], size_t count,
                        const row *r, const char *subject, list *words) {
     const nevh_energy_report *e = &r->energy;
-    double span = r->t_end - p->run->t_start;
     char *drifts = drift_of(e), *slope = slope_of(p, e);
     char *text =
         text_print("%s %s%s, %.2g %% of the scale over the run (%s)", subject,
                    drifts, p->balance ? " against the balance" : "",
-                   100 * fabs(e->drift) * span, slope);
+                   100 * fabs(verdict_drift(p, r)), slope);
     crossing_words(p, r, bounded_beside(rows, count, r), text, words);
 }
 

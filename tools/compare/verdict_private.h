@@ -11,6 +11,10 @@ bool verdict_is(const row *, nevh_verdict);
 char *verdict_subject(const plan *, const row rows[], size_t count,
                       const row *);
 
+/* Over the run, of the fitted line, which is no more than the errors that it is fitted to:
+   about errors that jump, or end level, the line is steeper than they are. */
+double verdict_drift(const plan *, const row *);
+
 /* verdict_longer.c: what runs that are continued say of rows. */
 /* The end of the run that a row's verdict is from. */
 char *verdict_until(const plan *, const row *);
