@@ -25,6 +25,20 @@ points() {
         /^EOD/ { on = 0 } on && NF == 2' $work/gp
 }
 
+# H of an equilibrium is no rounding, however small it is; the orbit that failed is named.
+printf '[coordinates]\nx = 1, 0\n[effects]\nkinetic = p_x^2/2
+V = 3.3*(x - 0.3)^2*(x + 0.7)^2 - 0.03*(x - 0.3)^2
+[run]\nt_end = 5\ndt = 0.05\nintegrators = yoshida4\n' >$work/zero.nevh
+exits 0 portrait $work/zero.nevh --plot $work/a.svg
+has '^centre at x = 0\.3, p_x = 0: H = 0$'
+sed 's/^V = .*/V = 1e-30*(x^4\/4 - x^2\/2) + 1e-32/; s/= p_x/= 1e-30*p_x/' $work/zero.nevh >$work/tiny.nevh
+exits 0 portrait $work/tiny.nevh --plot $work/a.svg
+has '^saddle at x = 0, p_x = 0: H = 1e-32$'
+sed 's/^V = .*/V = x^2\/2 - x^3\/3/' $work/zero.nevh >$work/edge.nevh
+exits 1 portrait $work/edge.nevh --vary 'x = 0.5, 2.5' --plot $work/a.svg
+says 'x = 2\.5'
+rm -f $work/a.svg
+
 # The pendulum: level curves are those of H, and so is the separatrix.
 exits 0 portrait pendulum --vary 'phi = 0' --vary 'p_phi = 1, 3, 5, 8' \
     --integrators verlet,euler --t-end 20 --dt 0.1 --plot $work/a.svg \

@@ -54,6 +54,16 @@ static char *why_of(const portrait_job *j, const orbits_of *o,
                : plan_why(&j->plan, message);
 }
 
+/* An orbit that failed is named as in the picture, if there are several. */
+static char *failure_of(const portrait_job *j, const orbits_of *o,
+                        const char *message) {
+    char *why = why_of(j, o, message);
+    if (j->members.count == 1)
+        return text_print("failed: %s", why);
+    return text_print("failed (%s): %s",
+                      members_start(&j->members, &j->plan, o->at), why);
+}
+
 static void run_orbits(portrait_job *j, orbits_of *o) {
     const plan *p = &j->plan;
     nevh_stepper *s = plan_stepper(p, o->integrator);
@@ -70,8 +80,7 @@ static void run_orbits(portrait_job *j, orbits_of *o) {
         nevh_observer observer = {take, o, o->every};
         nevh_stepper_reset(s);
         if (plan_run_from(p, s, &q, &m, &observer, 1, &stopped) && !o->failed++)
-            o->status =
-                text_print("failed: %s", why_of(j, o, nevh_stepper_message(s)));
+            o->status = failure_of(j, o, nevh_stepper_message(s));
     }
     nevh_stepper_free(s);
 }

@@ -149,6 +149,20 @@ static double place(const survey *s, int k, double z) {
     return fabs(x) < 1e-5 * s->cell[k] ? 0 : x;
 }
 
+/* H there; 0 where it is no larger than its own rounding: H of places so near that it is
+   the same, for it is level there, differs by as much. */
+static double energy_at(const survey *s, double x, double y) {
+    static const double beside = 1e-9, few = 4; /* of a cell */
+    double h = levels_energy(s->l, x, y), rounding = 0;
+    for (int i = -4; i <= 4; i++) {
+        double move = beside * i;
+        double there =
+            levels_energy(s->l, x + move * s->cell[0], y + move * s->cell[1]);
+        rounding = fmax(rounding, fabs(there - h));
+    }
+    return fabs(h) <= few * rounding ? 0 : h;
+}
+
 static void add(const survey *s, const double z[2]) {
     static const double near = 1e-2;
     levels *l = s->l;
@@ -159,7 +173,7 @@ static void add(const survey *s, const double z[2]) {
         if (fabs(l->found[i].x - e.x) < near * s->cell[0] &&
             fabs(l->found[i].y - e.y) < near * s->cell[1])
             return;
-    e.energy = levels_energy(l, e.x, e.y);
+    e.energy = energy_at(s, e.x, e.y);
     e.distance = hypot((e.x - l->plan->q[0]) / s->cell[0] / (COLUMNS - 1),
                        (e.y - l->plan->p[0]) / s->cell[1] / (ROWS - 1));
     l->found = tool_grown(l->found, l->count, sizeof *l->found);
