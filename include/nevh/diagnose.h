@@ -140,6 +140,9 @@ typedef struct {
     double missed; /* changes of the error in steps that pass over a change of H
                       in time and are wrong about the energy from outside by as
                       much: their sum, of one orbit, with nevh_energy_book */
+    double jump;   /* share of the slow changes that one jump explains: 1 of a
+                      collision, 0.75 of a steady loss */
+    double jump_t; /* its time */
 } nevh_energy_report;
 
 /* The verdict on a run, from the report on it, or on a run of the same steps

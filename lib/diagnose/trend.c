@@ -121,6 +121,27 @@ static void find_residuals(const nevh__trend *s, double slope,
         r->straightness = fmax(0, 1 - about_line / about_mean);
 }
 
+/* The share of the squares of residuals about the mean that two means explain, one of the
+   bins before a time and one of those after it: at the best of such times. */
+static void find_jump(const nevh__trend *s, nevh_energy_report *r) {
+    double all = 0, squares = 0, sum = 0, most = 0;
+    for (size_t i = 0; i < s->bins; i++)
+        all += s->bin[i].e / (double)s->bin[i].samples - s->mean_e;
+    double mean = s->mean_e + all / (double)s->bins;
+    for (size_t i = 0; i < s->bins; i++) {
+        double e = s->bin[i].e / (double)s->bin[i].samples - mean;
+        double before = (double)(i + 1), after = (double)(s->bins - i - 1);
+        squares += e * e;
+        sum += e;
+        double explained = after > 0 ? sum * sum * (1 / before + 1 / after) : 0;
+        if (explained > most) {
+            most = explained;
+            r->jump_t = s->bin[i + 1].t / (double)s->bin[i + 1].samples;
+        }
+    }
+    r->jump = squares > 0 ? fmin(1, most / squares) : 0;
+}
+
 /* The variance that a mean of the residuals has, times the number of bins: from its
    slowest waves, the cosines of one to SLOW_WAVES half periods (but for the
    first, which the line takes away) [U. K. Mueller, J. Econometrics 141 (2007)
@@ -142,6 +163,7 @@ static void fit_bins(const nevh__trend *s, nevh_energy_report *r) {
     if (s->bins < 3)
         return;
     find_residuals(s, r->drift, residual, r);
+    find_jump(s, r);
     for (size_t i = 0; i < s->bins; i++) {
         double dt = s->bin[i].t / (double)s->bin[i].samples - s->mean_t;
         tt += dt * dt;

@@ -88,7 +88,7 @@ class _Energy(c.Structure):
         [(name, c.c_double) for name in "span limit met rounding gradient".split()] +
         [("rate", c.c_double * 3), ("early", c.c_double), ("least", c.c_double),
          ("gone", c.c_bool), ("grown", c.c_double), ("relative", c.c_double * 2),
-         ("missed", c.c_double)])
+         ("missed", c.c_double), ("jump", c.c_double), ("jump_t", c.c_double)])
 
 
 class _JudgedRun(c.Structure):

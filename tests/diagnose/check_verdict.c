@@ -135,6 +135,29 @@ TEST(one_jump_that_stays) {
     }
 }
 
+static double loss(double t) {
+    return -2e-6 * t;
+}
+static double growing_wave(double t) {
+    return 1e-3 * sin(0.1 * t) + 1e-6 * t;
+}
+
+/* One jump is told from a line, from a wave and from a level error. */
+TEST(a_jump_is_no_line) {
+    peak = 0;
+    rest = -0.2;
+    nevh_energy_report r = report_on(collision, 90);
+    ck_assert_double_gt(r.jump, 0.98);
+    ck_assert_double_lt(fabs(r.jump_t - 30), 1);
+    ck_assert_double_lt(r.straightness, 0.8);
+    r = report_on(loss, 400);
+    ck_assert_double_lt(fabs(r.jump - 0.75), 0.01);
+    r = report_on(growing_wave, 400);
+    ck_assert_double_lt(r.jump, 0.5);
+    r = report_on(wave, 400);
+    ck_assert_double_lt(r.jump, 0.5);
+}
+
 /* Nothing was seen: nothing is said. */
 TEST(nothing_seen) {
     nevh_system *s = nevh_system_from(1, coordinate, NULL);

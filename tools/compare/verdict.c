@@ -171,10 +171,29 @@ static void later_line_words(const plan *p, const row *r, const char *subject,
                slope_of(p, &r->longer));
 }
 
+/* True if one jump accounts for the change, and no line does as well: of a line it
+   accounts for 0.75. */
+static bool has_jump(const nevh_energy_report *e) {
+    static const double most = 0.9;
+    return e->jump > most && e->jump > e->straightness;
+}
+
+static void jump_words(const plan *p, const row *r, const char *subject,
+                       list *words) {
+    list_print(words,
+               "%s %s energy at once%s, near t = %.4g%s: the error is level "
+               "before and after, %.2g %% of the scale at the end of the run.",
+               subject, r->energy.final < 0 ? "loses" : "gains",
+               p->balance ? " against the balance" : "", r->energy.jump_t,
+               p->unit, 100 * fabs(r->energy.final));
+}
+
 static void drift_words(const plan *p, const row rows[], size_t count,
                         const row *r, list *words) {
     char *subject = verdict_subject(p, rows, count, r);
-    if (has_line(&r->energy))
+    if (has_jump(&r->energy))
+        jump_words(p, r, subject, words);
+    else if (has_line(&r->energy))
         line_words(p, rows, count, r, subject, words);
     else if (r->followed > 0 && has_line(&r->longer))
         later_line_words(p, r, subject, words);
