@@ -3,9 +3,9 @@
    Many effects that are written out one by one, such as the springs of a
    lattice, have one formula of other variables and numbers.  A gradient takes
    them as instances of one term, whose constants are the numbers that differ.
-   Terms are neighbours in dH/dq, or in dH/dp, if no other term adds to that
-   half between them; and instances add in turn.  So sums have the same bits as
-   those of the terms, one after another.
+   Terms are neighbours if no term of a later formula adds, before the second of
+   them, to the derivatives that this one adds to; and instances add in turn.  So
+   sums have the same bits as those of the terms, one after another.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/tape_private.h"
 #include "gradient/evaluation_private.h"
@@ -164,50 +164,90 @@ void nevh__joints_clear(nevh_field *f) {
     f->n_pieces = 0;
 }
 
-/* The run that a term continues, or a new one. */
-static size_t run_of(const nevh_field *f, size_t i, const run runs[],
-                     size_t count, size_t last_q, size_t last_p) {
-    const nevh__planned *x = &f->terms[i];
-    size_t last = x->nq ? last_q : last_p;
-    bool both = !x->nq || !x->np || last_q == last_p;
-    return x->nv && both && last < count &&
-                   is_alike(&f->terms[runs[last].first], x)
-               ? last
-               : count;
+/* Runs that are tried for a term: the last ones that terms went to. */
+enum { RECENT = 16 };
+
+typedef struct {
+    run *runs;
+    size_t count, *next;
+    size_t
+        *runs_before; /* 2n: runs up to the last one that adds to a variable */
+    size_t recent[RECENT], recents;
+} joining;
+
+/* The runs up to the last one that adds to what the term adds to. */
+static size_t joining_before(const nevh_field *f, const joining *g, size_t i) {
+    const nevh_term *x = &f->terms[i].term->decl;
+    size_t most = 0;
+    for (size_t k = 0; k < x->count * (x->nq + x->np); k++) {
+        size_t v =
+            k < x->count * x->nq ? x->q[k] : f->n + x->p[k - x->count * x->nq];
+        most = g->runs_before[v] > most ? g->runs_before[v] : most;
+    }
+    return most;
 }
 
-static size_t find_runs(const nevh_field *f, run runs[], size_t next[]) {
-    size_t count = 0, last_q = SIZE_MAX, last_p = SIZE_MAX;
+/* The run that a term continues, or a new one. */
+static size_t run_of(const nevh_field *f, const joining *g, size_t i) {
+    const nevh__planned *x = &f->terms[i];
+    size_t before = x->nv ? joining_before(f, g, i) : g->count + 1;
+    for (size_t k = 0; k < g->recents; k++)
+        if (g->recent[k] + 1 >= before &&
+            is_alike(&f->terms[g->runs[g->recent[k]].first], x))
+            return g->recent[k];
+    return g->count;
+}
+
+/* The run becomes the most recent one. */
+static void use_run(joining *g, size_t at) {
+    size_t k = 0;
+    while (k < g->recents && g->recent[k] != at)
+        k++;
+    if (k == g->recents && g->recents < RECENT)
+        g->recents++;
+    k = k < RECENT ? k : RECENT - 1;
+    memmove(g->recent + 1, g->recent, k * sizeof *g->recent);
+    g->recent[0] = at;
+}
+
+static void go_to_run(const nevh_field *f, joining *g, size_t i, size_t at) {
+    const nevh_term *x = &f->terms[i].term->decl;
+    if (at == g->count)
+        g->runs[g->count++] = (run){i, i, 0};
+    g->next[g->runs[at].last] = i;
+    g->runs[at].last = i;
+    g->runs[at].count++;
+    for (size_t k = 0; k < x->count * x->nq; k++)
+        g->runs_before[x->q[k]] = at + 1;
+    for (size_t k = 0; k < x->count * x->np; k++)
+        g->runs_before[f->n + x->p[k]] = at + 1;
+    use_run(g, at);
+}
+
+static void find_runs(const nevh_field *f, joining *g) {
     bool joins = f->gradient->evaluate && !f->system->by_lane;
-    for (size_t i = 0; i < f->n_terms; i++) {
-        size_t at = joins ? run_of(f, i, runs, count, last_q, last_p) : count;
-        if (at == count)
-            runs[count++] = (run){i, i, 0};
-        next[runs[at].last] = i;
-        runs[at].last = i;
-        runs[at].count++;
-        if (f->terms[i].nq)
-            last_q = at;
-        if (f->terms[i].np)
-            last_p = at;
-    }
-    return count;
+    for (size_t i = 0; i < f->n_terms; i++)
+        go_to_run(f, g, i, joins ? run_of(f, g, i) : g->count);
 }
 
 bool nevh__field_join(nevh_field *f) {
     nevh__joints_clear(f);
-    run *runs = nevh__array(f->n_terms, sizeof *runs);
-    size_t *next = nevh__array(f->n_terms, sizeof *next);
-    bool fine = runs && next;
-    size_t count = fine ? find_runs(f, runs, next) : 0;
-    for (const run *r = runs; fine && r < runs + count; r++)
+    joining g = {.runs = nevh__array(f->n_terms, sizeof *g.runs),
+                 .next = nevh__array(f->n_terms, sizeof *g.next),
+                 .runs_before = nevh__array(2 * f->n, sizeof *g.runs_before)};
+    bool fine = g.runs && g.next && g.runs_before;
+    if (fine)
+        find_runs(f, &g);
+    for (const run *r = g.runs; fine && r < g.runs + g.count; r++)
         if (r->count >= FEWEST)
-            fine = joint_new(f, r, next);
+            fine = joint_new(f, r, g.next);
         else
-            for (size_t i = 0, at = r->first; i < r->count; i++, at = next[at])
+            for (size_t i = 0, at = r->first; i < r->count;
+                 i++, at = g.next[at])
                 f->pieces[f->n_pieces++] = &f->terms[at];
-    free(runs);
-    free(next);
+    free(g.runs);
+    free(g.next);
+    free(g.runs_before);
     return fine;
 }
 

@@ -508,13 +508,20 @@ static bool find_energies(nevh__step_selection *e, variations *v,
     return curved == first || look_along_orbit(e, v, sizes);
 }
 
+/* Returns the lengths of one orbit that need not be looked for; NULL: there are none. */
+static const double *known_lengths(const nevh__step_selection *e) {
+    const nevh_options *o = e->options;
+    return e->field->length ? e->field->length : o->width > 1 ? NULL : o->scale;
+}
+
 bool nevh__find_lengths(nevh__step_selection *e) {
     size_t n = e->field->n;
     double last = 1;
-    if (e->field->length) {
+    const double *known = known_lengths(e);
+    if (known) {
         lengths_load(e, 0, 0);
         e->lanes = e->samples.count = 1;
-        memcpy(e->length, e->field->length, 2 * n * sizeof(double));
+        memcpy(e->length, known, 2 * n * sizeof *known);
         return true;
     }
     double *room = nevh__array(6 * n, sizeof *room);

@@ -34,6 +34,34 @@ static nevh_scene *lattice(void) {
     return s;
 }
 
+/* A chain whose springs and wells stand by turns, and then both in no order, some of
+   them between bodies far apart. */
+static nevh_scene *chain(bool tangled) {
+    static char text[40000];
+    uint64_t seed = 5;
+    char *to = text;
+    to += sprintf(to, "[coordinates]\nx[i = 1..%d] = sin(i)\n[effects]\n", N);
+    for (int i = 1; i < N; i++) {
+        int a = i, b = i + 1;
+        bool first = true; /* the spring */
+        if (tangled) {
+            seed = seed * 6364136223846793005u + 1442695040888963407u;
+            a = (int)(seed >> 40) % N + 1;
+            b = a % N + 1 + (int)(seed >> 33) % 2 * (a < N / 2 ? 7 : 0);
+            first = seed >> 63;
+        }
+        for (int part = 0; part < 2; part++)
+            to += part == first
+                      ? sprintf(to, "w%d = %.17g*x[%d]^4 + p_x[%d]^2/2\n", i,
+                                0.2 + 0.01 * (i % 3), a, i)
+                      : sprintf(to, "s%d = %.17g*(x[%d] - x[%d])^2*cos(t)\n", i,
+                                0.3 + 0.01 * (i % 5), a, b);
+    }
+    nevh_scene *s = nevh_scene_parse("test", text);
+    ck_assert_msg(!nevh_scene_status(s), "%s", nevh_scene_message(s));
+    return s;
+}
+
 static nevh_field *field_of(const nevh_system *s, const nevh_gradient *g,
                             size_t width) {
     nevh_options o = {.gradient = g, .gradient_step = 0x1p-8, .width = width};
@@ -80,10 +108,11 @@ static void take_alone(nevh_scene *s, const nevh_gradient *g, size_t width,
 }
 
 TEST_EACH(sums_have_the_bits_of_terms_one_by_one,
-          WIDTHS * sizeof gradients / sizeof *gradients) {
-    const nevh_gradient *g = *gradients[_i / WIDTHS];
+          3 * WIDTHS * sizeof gradients / sizeof *gradients) {
+    const nevh_gradient *g = *gradients[_i / (3 * WIDTHS)];
     size_t width = widths[_i % WIDTHS], size = N * width;
-    nevh_scene *s = lattice();
+    int form = _i / WIDTHS % 3;
+    nevh_scene *s = form == 0 ? lattice() : chain(form == 2);
     double *x = calloc(6 * size + width, sizeof *x), *t = x + 6 * size;
     fill(width, t, x, x + size);
     take_alone(s, g, width, t, x, x + size, x + 2 * size);
@@ -105,6 +134,15 @@ TEST(neighbours_are_one_piece) {
     nevh_scene *s = lattice();
     nevh_field *f = field_of(nevh_scene_system(s), nevh_exact, 1);
     ck_assert_uint_lt(nevh_field_pieces(f), 8);
+    nevh_field_free(f);
+    nevh_scene_free(s);
+}
+
+/* Springs, wells and kinetic energies. */
+TEST(terms_by_turns_are_pieces) {
+    nevh_scene *s = chain(false);
+    nevh_field *f = field_of(nevh_scene_system(s), nevh_exact, 1);
+    ck_assert_uint_eq(nevh_field_pieces(f), 3);
     nevh_field_free(f);
     nevh_scene_free(s);
 }
@@ -145,4 +183,50 @@ TEST_EACH(the_effect_that_fails_is_named, 2) {
                   nevh_field_message(f));
     nevh_field_free(f);
     nevh_scene_free(s);
+}
+
+static size_t values_asked;
+
+static double asked(double t, const double q[], const double p[],
+                    const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    values_asked++;
+    return q[0] * q[0] + cos(q[1]);
+}
+
+static void asked_gradient(size_t width, const double t[], const double q[],
+                           const double p[], const double c[],
+                           const void *params, double dq[], double dp[]) {
+    (void)t, (void)p, (void)c, (void)params, (void)dp;
+    for (size_t i = 0; dq && i < width; i++) {
+        dq[i] = 2 * q[i];
+        dq[width + i] = -sin(q[width + i]);
+    }
+}
+
+static size_t asked_to_plan(const double scale[]) {
+    static const size_t which[] = {0, 1};
+    static const double q[] = {0.3, 0.4}, p[] = {0.1, 0.2};
+    nevh_system *s = nevh_system_new(2);
+    nevh_system_add(s, &(nevh_term){.effect = "well",
+                                    .name = "well",
+                                    .count = 1,
+                                    .nq = 2,
+                                    .q = which,
+                                    .value = asked,
+                                    .gradient = asked_gradient});
+    nevh_options o = {
+        .gradient = nevh_exact, .scale = scale, .q = q, .p = p, .width = 1};
+    values_asked = 0;
+    nevh_field *f = nevh_field_new(s, &o);
+    ck_assert_msg(!nevh_field_status(f), "%s", nevh_field_message(f));
+    nevh_field_free(f);
+    nevh_system_free(s);
+    return values_asked;
+}
+
+/* Planning of exact gradients asks for values to compare with, and for lengths. */
+TEST(lengths_that_are_given_are_not_looked_for) {
+    static const double scale[] = {1, 1, 1, 1};
+    ck_assert_uint_lt(asked_to_plan(scale), asked_to_plan(NULL) / 2);
 }

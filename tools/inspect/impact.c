@@ -17,12 +17,14 @@ typedef struct {
     bool *fits;
 } choice;
 
-static void add_choice(choice *c, const plan *p, const char *name) {
+static void add_choice(choice *c, const plan *p, const double scale[],
+                       const char *name) {
     bool transformed;
     const nevh_integrator *scheme = plan_scheme(p, name, &transformed);
     nevh_options o = plan_options(p, p->gradients.item[0]);
     o.gradient_step = o.gradient_step > 0 ? o.gradient_step : 1e-3;
     o.binding = 1; /* nothing runs: what planning would find out is spared */
+    o.scale = scale;
     o.transform = plan_transform(p, name);
     if (nevh_integrator_needs_tolerance(scheme))
         o.tolerance = 1e-6;
@@ -38,12 +40,15 @@ static choice choices(const plan *p) {
         most++;
     choice c = {0, tool_allocate(2 * most, sizeof *c.name),
                 tool_allocate(2 * most, sizeof *c.fits)};
+    double *scale = tool_allocate(2 * p->n, sizeof *scale);
+    for (size_t i = 0; i < 2 * p->n; i++)
+        scale[i] = 1;
     for (size_t i = 0; i < most; i++) {
         const char *name = nevh_integrator_name(plan_scheme_at(p, i));
         char *transformed = text_print("%s+transform", name);
-        add_choice(&c, p, name);
+        add_choice(&c, p, scale, name);
         if (nevh_scene_transform(p->scene))
-            add_choice(&c, p, transformed);
+            add_choice(&c, p, scale, transformed);
     }
     return c;
 }
@@ -55,13 +60,19 @@ static bool fits(const choice *c, const char *name) {
     return false;
 }
 
+/* The system with some effects on. */
+typedef struct {
+    choice choice;
+    char *structure; /* NULL: nothing is known yet */
+    bool time, friction;
+    const char *integrator; /* of the trace; NULL: there is none yet */
+    trace trace;
+} way;
+
 /* Both ways: [0] without the effect, [1] with it. */
 typedef struct {
-    choice choice[2];
-    char *structure[2];
-    bool time[2], friction[2];
+    way way[2];
     const char *integrator; /* NULL: none of the scene's fits both ways */
-    trace trace[2];
     bool ran;
 } both;
 
@@ -81,7 +92,7 @@ bool impact_switch(plan *p, const char *effect, bool on) {
 
 static void draw(plot **to, plan *p, const char *effect, const both *b) {
     trace dense[2];
-    difference d = trace_difference(&b->trace[0], &b->trace[1]);
+    difference d = trace_difference(&b->way[0].trace, &b->way[1].trace);
     for (int on = 0; on < 2; on++) {
         impact_switch(p, effect, on);
         dense[on] = trace_dense(p, b->integrator);
@@ -89,25 +100,38 @@ static void draw(plot **to, plan *p, const char *effect, const both *b) {
     impact_draw(to, p, effect, dense, &d);
 }
 
-static bool look(plan *p, const char *effect, both *b) {
+static void look_at(const plan *p, way *w) {
+    w->choice = choices(p);
+    w->structure = plan_structure(p);
+    w->time = p->time;
+    w->friction = p->friction;
+}
+
+/* as_it_is: the way that one of both is, since effects other than this one stay;
+   what is found out of it is of use to the next effect. */
+static bool look(plan *p, const char *effect, way *as_it_is, both *b) {
+    way *same = &b->way[nevh_system_effect_on(p->system, effect)];
+    *same = *as_it_is;
     for (int on = 0; on < 2; on++) {
         if (!impact_switch(p, effect, on))
             return false;
-        b->choice[on] = choices(p);
-        b->structure[on] = plan_structure(p);
-        b->time[on] = p->time;
-        b->friction[on] = p->friction;
+        if (!b->way[on].structure)
+            look_at(p, &b->way[on]);
     }
     for (size_t i = 0; !b->integrator && i < p->integrators.count; i++)
-        if (fits(&b->choice[0], p->integrators.item[i]) &&
-            fits(&b->choice[1], p->integrators.item[i]))
+        if (fits(&b->way[0].choice, p->integrators.item[i]) &&
+            fits(&b->way[1].choice, p->integrators.item[i]))
             b->integrator = p->integrators.item[i];
     b->ran = b->integrator;
     for (int on = 0; b->integrator && on < 2; on++) {
+        way *w = &b->way[on];
         impact_switch(p, effect, on);
-        b->trace[on] = trace_run(p, b->integrator);
-        b->ran &= !b->trace[on].status;
+        if (w->integrator != b->integrator)
+            w->trace = trace_run(p, b->integrator);
+        w->integrator = b->integrator;
+        b->ran &= !w->trace.status;
     }
+    *as_it_is = *same;
     return true;
 }
 
@@ -122,8 +146,8 @@ static bool moves(const trace *o, size_t first) {
 /* Without it there is no orbit to compare with, such as kinetic energy: though
    momenta change, coordinates do not. */
 static bool is_essential(const both *b) {
-    const trace *a = &b->trace[0];
-    return b->ran && moves(&b->trace[1], 0) && !moves(a, 0) &&
+    const trace *a = &b->way[0].trace;
+    return b->ran && moves(&b->way[1].trace, 0) && !moves(a, 0) &&
            moves(a, a->plan->n);
 }
 
@@ -134,9 +158,9 @@ static bool rests(const trace *o) {
 /* Schemes that fit without, but not with it. */
 static list ruled_out(const both *b) {
     list names = {0};
-    for (size_t i = 0; i < b->choice[0].count; i++)
-        if (b->choice[0].fits[i] && !b->choice[1].fits[i])
-            list_add(&names, b->choice[0].name[i]);
+    for (size_t i = 0; i < b->way[0].choice.count; i++)
+        if (b->way[0].choice.fits[i] && !b->way[1].choice.fits[i])
+            list_add(&names, b->way[0].choice.name[i]);
     return names;
 }
 
@@ -155,15 +179,15 @@ static void effect_words(const char *effect, const both *b, const char *names,
     if (count)
         list_print(words, "%s rules out %zu integrator%s: %s.", effect, count,
                    count > 1 ? "s" : "", names);
-    if (strcmp(b->structure[0], b->structure[1]) != 0)
-        list_print(words, "With %s %s; without it %s.", effect, b->structure[1],
-                   b->structure[0]);
-    if (b->time[1] && !b->time[0])
+    if (strcmp(b->way[0].structure, b->way[1].structure) != 0)
+        list_print(words, "With %s %s; without it %s.", effect,
+                   b->way[1].structure, b->way[0].structure);
+    if (b->way[1].time && !b->way[0].time)
         list_print(words,
                    "With %s H depends on time: its energy is not conserved, "
                    "and errors are those of the energy balance.",
                    effect);
-    if (b->friction[1] && !b->friction[0])
+    if (b->way[1].friction && !b->way[0].friction)
         list_print(words,
                    "%s is friction: steps of geometric schemes are split "
                    "around it, which is of order 2 at most.",
@@ -174,13 +198,13 @@ static void effect_words(const char *effect, const both *b, const char *names,
                    "it; give others with --integrators.",
                    effect);
     for (int on = 0; b->integrator && on < 2; on++)
-        end_words(effect, on, &b->trace[on], words);
+        end_words(effect, on, &b->way[on].trace, words);
     if (is_essential(b))
         list_print(words,
                    "Without %s no coordinate moves: there is no orbit to "
                    "compare with.",
                    effect);
-    else if (b->ran && rests(&b->trace[0]) && !rests(&b->trace[1]))
+    else if (b->ran && rests(&b->way[0].trace) && !rests(&b->way[1].trace))
         list_print(words, "Without %s nothing moves.", effect);
 }
 
@@ -200,7 +224,7 @@ static bool put_row(const options *o, const char *effect, bool on,
                     const both *b, double scale, page *result) {
     static const double far_apart = 0.5;
     table *t = result->table;
-    const trace *a = &b->trace[0], *c = &b->trace[1];
+    const trace *a = &b->way[0].trace, *c = &b->way[1].trace;
     const bool shown = o->format == FORMAT_TABLE;
     difference d = {0};
     list out = ruled_out(b);
@@ -264,11 +288,12 @@ static int add_all(const options *o, plan *p, page *result, plot **to) {
     bool apart = false, ran = false;
     const char *used = NULL;
     char *why = NULL;
+    way as_it_is = {0};
     for (size_t i = 0; i < count; i++) {
         char *effect = text_print("%s", nevh_system_effect_name(p->system, i));
         bool on = nevh_system_effect_on(p->system, effect);
         both b = {0};
-        if (look(p, effect, &b))
+        if (look(p, effect, &as_it_is, &b))
             apart |= put_row(o, effect, on, &b, scale, result);
         else
             list_print(&result->after, "%s cannot be switched on: %s", effect,
@@ -278,7 +303,7 @@ static int add_all(const options *o, plan *p, page *result, plot **to) {
         ran |= b.ran;
         used = b.ran ? b.integrator : used;
         if (b.integrator && !b.ran && !why)
-            why = text_print("%s", b.trace[!b.trace[0].status].message);
+            why = text_print("%s", b.way[!b.way[0].trace.status].trace.message);
         impact_switch(p, effect, on);
     }
     if (apart)
