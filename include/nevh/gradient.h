@@ -103,6 +103,9 @@ NEVH_API const char *nevh_field_message(const nevh_field *);
    dh_dp    out, n x width, overwritten; NULL when not wanted
    cost     order values a variable, instance and state (central), 2 where H
             was found to be quadratic in the variable
+   traps    a caller's traps of floating-point exceptions stay on, also in
+            nevh_field_value and nevh_field_effects: to hold them takes half as
+            long as the gradient of a pendulum
    returns  NEVH_OK; NEVH_EDOM when a value is not finite (the message names
             the term; outputs are undefined); NEVH_ESTALE; the status of a
             field that could not be planned */

@@ -1,6 +1,7 @@
 /* nevh: what a field says about its steps.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/step_selection_private.h"
+#include <fenv.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -70,11 +71,14 @@ int nevh_field_energy_floor(nevh_field *f, double t, const double q[],
     double *v = nevh__array(4 * f->n, sizeof *v);
     if (!v)
         return nevh__no_memory(&f->report);
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
     int status = nevh_field_gradient(f, 1, &t, q, p, v, v + f->n);
     if (!status)
         status = nevh__field_noise(f, t, q, p, v + 2 * f->n, v + 3 * f->n);
     if (!status)
         *energy = fabs(h) * sqrt((double)steps * noise_power(f, v));
+    fesetenv(&own);
     free(v);
     return status;
 }

@@ -137,13 +137,10 @@ static int orbit_run_untrapped(nevh__running *r) {
 }
 
 static int orbit_run(nevh__running *r) {
-    const nevh_stepper *s = r->stepper;
     fenv_t own;
-    if (s->holds_traps)
-        feholdexcept(&own);
+    feholdexcept(&own);
     int status = orbit_run_untrapped(r);
-    if (s->holds_traps)
-        fesetenv(&own);
+    fesetenv(&own);
     return status;
 }
 

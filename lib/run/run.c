@@ -130,12 +130,14 @@ int nevh_run(nevh_stepper *s, double t0, double h, size_t steps, double q[],
     int status = nevh__begin_run(&r);
     if (status)
         return status;
+    bool holds_traps =
+        s->holds_traps || steps > 1; /* that takes as long as a step */
     fenv_t own;
-    if (s->holds_traps)
+    if (holds_traps)
         feholdexcept(&own);
     status = nevh__run_steps(&r, steps, true);
     nevh__end_run(&r);
-    if (s->holds_traps)
+    if (holds_traps)
         fesetenv(&own);
     return status;
 }

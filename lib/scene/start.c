@@ -1,6 +1,7 @@
 /* nevh: the state at t_start.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/scene_ensemble_private.h"
+#include <fenv.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -62,6 +63,11 @@ int nevh_scene_start(nevh_scene *scene, double q[], double p[]) {
         p[k] = m->p[k];
         any |= m->by_velocity[k];
     }
+    fenv_t own; /* as in nevh_stepper_new */
+    feholdexcept(&own);
     int status = any ? find_momenta(scene, q, p) : NEVH_OK;
-    return status ? status : check_values(scene, q, p);
+    if (!status)
+        status = check_values(scene, q, p);
+    fesetenv(&own);
+    return status;
 }

@@ -237,6 +237,49 @@ static void try_all(int i, void (*use)(subject *)) {
     close_subject(&s);
 }
 
+/* Orbits of which a value of H overflows, or is divided by 0. */
+static const char *const ending[] = {
+    "x = 0\n[effects]\nT = p_x^2/2\nV = -1/x\n",
+    "x = 1e200\n[effects]\nT = p_x^2/2\nV = x^4/4\n",
+    "x = 1\np_x = -3\n[effects]\nT = p_x^2/2\nV = sqrt(x)\n"};
+enum { ENDING = sizeof ending / sizeof *ending };
+
+TEST_EACH(runs_that_end, 2 * ENDING) {
+    char text[200];
+    if (!trap())
+        skip_test("exceptions cannot be trapped here");
+    snprintf(text, sizeof text, "[coordinates]\n%s", ending[_i / 2]);
+    nevh_scene *scene = nevh_scene_parse("test", text);
+    static const double planned[] = {1, 0.5};
+    double start[2], z[2], floor;
+    nevh_scene_start(scene, start, start + 1);
+    nevh_options o = {.gradient = nevh_exact,
+                      .q = planned,
+                      .p = planned + 1,
+                      .native =
+                          _i % 2 ? NEVH_NATIVE_ALWAYS : NEVH_NATIVE_NEVER};
+    nevh_stepper *s =
+        nevh_stepper_new(nevh_scene_system(scene), nevh_verlet, &o);
+    nevh_energy *e = nevh_energy_new(nevh_scene_system(scene), &o);
+    memcpy(z, start, sizeof z);
+    nevh_observer observer = {nevh_energy_observe, e, 1};
+    ck_assert_int_ne(nevh_run(s, 0, 0.05, 400, z, z + 1, &observer, 1),
+                     NEVH_OK);
+    assert_trapping("run");
+    memcpy(z, start, sizeof z);
+    nevh_stepper_reset(s);
+    ck_assert_int_ne(nevh_run_until(s, 0, 0.05, 20, z, z + 1, NULL, 0),
+                     NEVH_OK);
+    assert_trapping("run_until");
+    nevh_field_energy_floor(nevh_stepper_field(s), 0, start, start + 1, 0.05, 9,
+                            &floor);
+    assert_trapping("energy_floor");
+    fedisableexcept(FE_ALL_EXCEPT);
+    nevh_energy_free(e);
+    nevh_stepper_free(s);
+    nevh_scene_free(scene);
+}
+
 TEST_EACH(schemes, find_shipped()) {
     try_all(_i, use_schemes);
 }
