@@ -35,14 +35,15 @@ typedef struct {
     nevh_field *field;           /* for values */
     nevh_field *gradient;        /* the first that is asked for */
     nevh_field *exact;           /* the same, exact */
-    double *slopes;              /* 4n: of both */
+    double *slopes;              /* 6n: of both, and the exact ones beside */
     double *largest;             /* 4n: exact slopes, errors of the others */
     double steepest, most_wrong; /* of exact slopes; of errors of the others */
     double most_cancelled;       /* how much rounding changes exact ones */
     double scale;                /* of the energy */
     double *length;              /* 2n */
     double *z, *before;          /* 2n */
-    double *trial, *moved;       /* 2n */
+    double *trial;               /* 2n */
+    double *moved;               /* 4n: moves, and the state that is moved */
     double *fast;                /* 2n: the state of fastest.rate */
     nevh_stepper *stepper;
     bool ends; /* the orbit, or what may be spent, at a time */
@@ -134,26 +135,47 @@ static bool is_rounding(trial *f, double t, const double a[],
            sqrt(sum) <= most * floor;
 }
 
-/* Exact slopes a few roundings of the state away differ by more than these where numbers
-   cancel in the formulas. */
+static void take_cancelled(trial *f, double t, double most) {
+    if (most > f->most_cancelled) {
+        f->most_cancelled = most;
+        f->found->cancelled_at = t;
+    }
+}
+
+/* Exact slopes b away from the state, by `length` times what `moved` says. */
+static bool slopes_beside(trial *f, double t, double length, double b[]) {
+    size_t n = f->plan->n;
+    double *at = f->moved + 2 * n;
+    for (size_t k = 0; k < 2 * n; k++)
+        at[k] = f->trial[k] + length * f->moved[k];
+    return !nevh_field_gradient(f->exact, 1, &t, at, at + n, b, b + n);
+}
+
+/* Where numbers cancel in the formulas, exact slopes a few roundings of the state away
+   differ by more than these, and the mean of those at both sides, so close that it
+   should be the slope, is off by the rounding of what cancels. */
 static void look_for_cancellation(trial *f, double t, const double a[],
                                   double b[]) {
     enum { TRIES = 3 };
+    static const double close = 0x1p-22;
     size_t n = f->plan->n;
-    for (int i = 0; i < TRIES; i++) {
-        for (size_t k = 0; k < 2 * n; k++) {
-            int ulps = (int)((k + 2 * (size_t)i) % 5) - 2;
-            f->moved[k] = f->trial[k] * (1 + ulps * DBL_EPSILON);
-        }
-        if (nevh_field_gradient(f->exact, 1, &t, f->moved, f->moved + n, b,
-                                b + n))
+    double *c = b + 2 * n, most = 0;
+    for (size_t i = 0; i < TRIES; i++) {
+        for (size_t k = 0; k < 2 * n; k++)
+            f->moved[k] = f->trial[k] * ((double)((k + 2 * i) % 5) - 2);
+        if (!slopes_beside(f, t, DBL_EPSILON, b))
             return;
         for (size_t k = 0; k < 2 * n; k++)
-            if (fabs(b[k] - a[k]) > f->most_cancelled) {
-                f->most_cancelled = fabs(b[k] - a[k]);
-                f->found->cancelled_at = t;
-            }
+            most = fmax(most, fabs(b[k] - a[k]));
+        for (size_t k = 0; k < 2 * n; k++)
+            f->moved[k] = fmin(fabs(f->trial[k]), f->length[k]) *
+                          (1 + (double)((k + i) % 3) / 4);
+        if (!slopes_beside(f, t, close, b) || !slopes_beside(f, t, -close, c))
+            return;
+        for (size_t k = 0; k < 2 * n; k++)
+            most = fmax(most, fabs((b[k] - a[k]) + (c[k] - a[k])) / 2);
     }
+    take_cancelled(f, t, most);
 }
 
 /* Errors of the first gradient at the state, and of the exact one. */
@@ -398,14 +420,14 @@ trial_run trial_run_new(const plan *p, bool chaos) {
     f.z = tool_allocate(2 * p->n, sizeof *f.z);
     f.before = tool_allocate(2 * p->n, sizeof *f.z);
     f.trial = tool_allocate(2 * p->n, sizeof *f.trial);
-    f.moved = tool_allocate(2 * p->n, sizeof *f.moved);
+    f.moved = tool_allocate(4 * p->n, sizeof *f.moved);
     f.fast = tool_allocate(2 * p->n, sizeof *f.fast);
     f.busiest.z = tool_allocate(2 * p->n, sizeof *f.z);
     o.gradient_step = 0;
     f.field = plan_values(p);
     f.gradient = nevh_field_new(p->system, &given);
     f.exact = nevh_field_new(p->system, &o);
-    f.slopes = tool_allocate(4 * p->n, sizeof *f.slopes);
+    f.slopes = tool_allocate(6 * p->n, sizeof *f.slopes);
     f.largest = tool_allocate(4 * p->n, sizeof *f.largest);
     f.scale = plan_energy_scale(p);
     f.instances = (double)nevh_field_counts(f.field).instances;
