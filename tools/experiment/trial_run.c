@@ -151,7 +151,7 @@ static bool slopes_beside(trial *f, double t, double length, double b[]) {
     return !nevh_field_gradient(f->exact, 1, &t, at, at + n, b, b + n);
 }
 
-/* Where numbers cancel in the formulas, exact slopes a few roundings of the state away
+/* Finds cancellation in the formulas: exact slopes a few roundings of the state away
    differ by more than these, and the mean of those at both sides, so close that it
    should be the slope, is off by the rounding of what cancels. */
 static void look_for_cancellation(trial *f, double t, const double a[],
