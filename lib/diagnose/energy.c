@@ -272,6 +272,7 @@ static double error_now(const nevh_energy *e, size_t lane) {
 /* The energy from outside in the step from the last state to this one. */
 static void book(nevh_energy *e, double t, const double q[], const double p[]) {
     double before = e->trend->last;
+    e->book.told = e->followed->work.ledger;
     double wrong = nevh__book_step(&e->book, e->passage.before,
                                    e->trend->samples == 1, t, q, p, gain(e, 0));
     double change = fabs(error_now(e, 0) - before);

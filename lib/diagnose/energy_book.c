@@ -96,7 +96,8 @@ double nevh__book_step(nevh__book *b, const double from[], bool first, double t,
     if (!b->timing || !isfinite(came))
         return 0;
     double jumped = energy_book_jumps(b, &s, first);
-    if (!nevh__timing_is_fast(b->timing, from[2 * b->n], t)) {
+    if (!nevh__timing_is_fast(b->timing, from[2 * b->n], t) ||
+        nevh__ledger_saw(b->told, b->timing, from[2 * b->n], t)) {
         b->booked += jumped;
         return 0;
     }

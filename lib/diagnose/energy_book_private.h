@@ -4,13 +4,14 @@
 #ifndef NEVH_ENERGY_BOOK_PRIVATE_H
 #define NEVH_ENERGY_BOOK_PRIVATE_H
 
-#include "expression/timing_private.h"
+#include "work/ledger_private.h"
 #include <nevh/gradient.h>
 
 /* The book of one orbit. */
 typedef struct {
     nevh_field *field;         /* for values */
     const nevh_timing *timing; /* NULL: nothing is booked */
+    struct nevh_ledger *told;  /* by the steps; NULL: nothing */
     size_t n;
     double *state; /* 2n: between two states; friction's rates, n, follow */
     bool friction;

@@ -19,14 +19,17 @@ static const double incomplete = 1e-9; /* of a step, not accounted for */
 
 struct nevh_ledger {
     nevh_field *field;
-    nevh__time_step *steps;        /* of the field's terms */
-    double *t, *rate, *h;          /* width each; rate: of the gain */
-    double *slope;                 /* n x width: dH/dp, for friction */
-    double *q, *p;                 /* n x width: where the step began */
-    double *pending, *roundoff;    /* width each: of the step under way */
-    double kicked, drifted;        /* parts of it that the kernel told */
+    nevh__time_step *steps;     /* of the field's terms */
+    double *t, *rate, *h;       /* width each; rate: of the gain */
+    double *slope;              /* n x width: dH/dp, for friction */
+    double *q, *p;              /* n x width: where the step began */
+    double *pending, *roundoff; /* width each: of the step under way */
+    double kicked, drifted;     /* parts of it that the kernel told */
+    double *seen;               /* times of the step at which dH/dt was taken */
+    size_t n_seen, room;
     bool driven, mixed, by_kernel; /* reads t; so does a term of q and p; the
                                       kernel has something to tell */
+    bool watches;                  /* the scheme's own steps, by `seen` */
 };
 
 static int ledger_out_of_memory(nevh_work *w) {
@@ -78,6 +81,8 @@ int nevh__ledger_plan(nevh_work *w, bool friction) {
         return ledger_out_of_memory(w);
     l->driven = driven;
     l->by_kernel = driven || w->friction;
+    l->watches = driven && w->options->tolerance > 0 &&
+                 (w->integrator->adaptive || w->integrator->needs_tolerance);
     int status = ledger_allocate(w, l);
     return status ? status : ledger_plan_field(w, l);
 }
@@ -95,6 +100,7 @@ void nevh__ledger_free(struct nevh_ledger *l) {
     free(l->slope);
     free(l->q);
     free(l->p);
+    free(l->seen);
     free(l);
 }
 
@@ -103,6 +109,7 @@ void nevh__ledger_open(nevh_work *w, const double q[], const double p[]) {
     if (!l)
         return;
     l->kicked = l->drifted = 0;
+    l->n_seen = 0;
     for (size_t lane = 0; lane < w->width; lane++)
         l->pending[lane] = l->roundoff[lane] = 0;
     if (!l->mixed)
@@ -185,12 +192,48 @@ static int ledger_add_friction(nevh_work *w, const double t[], const double q[],
     return status;
 }
 
+static int see(nevh_work *w, double t) {
+    struct nevh_ledger *l = w->ledger;
+    if (l->n_seen == l->room) {
+        size_t room = 2 * l->room + 64;
+        double *more = realloc(l->seen, room * sizeof *more);
+        if (!more)
+            return ledger_out_of_memory(w);
+        l->seen = more;
+        l->room = room;
+    }
+    l->seen[l->n_seen++] = t;
+    return NEVH_OK;
+}
+
+static int compare_times(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+bool nevh__ledger_saw(struct nevh_ledger *l, const nevh_timing *timing,
+                      double from, double to) {
+    double low = fmin(from, to), high = fmax(from, to);
+    if (!l || !l->n_seen)
+        return false;
+    qsort(l->seen, l->n_seen, sizeof *l->seen, compare_times);
+    for (size_t i = 0; i <= l->n_seen; i++) {
+        double next = i < l->n_seen ? l->seen[i] : high;
+        if (nevh__timing_is_fast(timing, low, next))
+            return false;
+        low = next;
+    }
+    return true;
+}
+
 int nevh__ledger_account(nevh_work *w, unsigned parts, double weight,
                          const double t[], const double q[], const double p[]) {
     struct nevh_ledger *l = w->ledger;
-    int status = NEVH_OK;
     if (!l || !l->by_kernel || weight == 0)
-        return status;
+        return NEVH_OK;
+    int status = NEVH_OK;
+    if (l->watches && see(w, *t))
+        return NEVH_ENOMEM;
     l->kicked += parts & NEVH_OF_Q ? weight : 0;
     l->drifted += parts & NEVH_OF_P ? weight : 0;
     for (size_t lane = 0; lane < w->width; lane++)

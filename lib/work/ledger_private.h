@@ -3,6 +3,7 @@
 #ifndef NEVH_LEDGER_PRIVATE_H
 #define NEVH_LEDGER_PRIVATE_H
 
+#include "expression/timing_private.h"
 #include <nevh/extend.h>
 
 /* Makes w->ledger, where a balance was asked for and the energy changes:
@@ -17,6 +18,10 @@ int nevh__ledger_add(nevh_work *, double sign, double t, const double q[],
 /* nevh_work_account, as far as the energy goes. */
 int nevh__ledger_account(nevh_work *, unsigned parts, double weight,
                          const double t[], const double q[], const double p[]);
+/* True if the last step, between two times, is one of a scheme with a tolerance that
+   took dH/dt so often that it passed over none of the changes in time. */
+bool nevh__ledger_saw(struct nevh_ledger *, const nevh_timing *, double from,
+                      double to);
 /* The step was taken: what is pending is added to total, which is two rows of
    width: sums, and the digits that these lost. */
 void nevh__ledger_close(const nevh_work *, double total[]);

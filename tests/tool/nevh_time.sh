@@ -39,6 +39,28 @@ converges peak 0.1 0.00025
 exits 0 check $work/peak.nevh
 has '^D changes within 0\.00[0-9]+ near t = 7\.7[67]'
 
+# Steps within dt that saw a change have the balance of their own.
+make_scene pulse 'x = 1' "$spring\nD = -10*x*exp(-((t-12.567)/0.02)^2)" \
+    't_end = 60\ndt = 0.1'
+# errors NAME INTEGRATORS TOLERANCE: of the energy.
+errors() {
+    $nevh compare $work/$1.nevh --integrators $2 --tolerance $3 --format csv |
+        field max_energy_error
+}
+errors pulse dopri5,dop853,dprkn12,taylor 1e-9 >$work/error
+awk '!($1 < 1e-6) { exit 1 } END { exit NR != 4 }' $work/error ||
+    fails "balances of own steps: $(cat $work/error)"
+errors pulse dop853 1e-12 >$work/error
+awk '!($1 < 1e-9) { exit 1 }' $work/error || fails "dop853: $(cat $work/error)"
+errors peak dop853,dprkn12 1e-6 >$work/error
+awk '!($1 > 0.3) { exit 1 } END { exit NR != 2 }' $work/error ||
+    fails "steps that pass over the peak: $(cat $work/error)"
+exits 0 compare $work/pulse.nevh --integrators verlet,rk4,dop853 --tolerance 1e-9
+has ' verlet .* 6\.6e-03 .* undecided'
+has ' rk4 .* 2\.1e-03 .* undecided'
+has '^D changes within 0\.015 near'
+has '\(verlet, rk4\)'
+
 make_scene box 'x = 1' "$spring\nD = -10*x*(sign(t-4)-sign(t-4.001))" "$twenty"
 converges box 0.1 0.0001
 

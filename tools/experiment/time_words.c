@@ -88,13 +88,20 @@ void time_notes(const plan *p, list *notes) {
                         "jumps too often");
 }
 
+/* True if its own steps, shorter where H changes fast, pass over nothing. */
+static bool own_steps_see(const plan *p, const row *r) {
+    return r->tolerance > 0 && p->balance &&
+           !nevh_energy_passes_over(&r->energy);
+}
+
 /* Rows whose steps are longer than the fastest change. */
-static list too_long(const row rows[], size_t count, double shortest,
-                     double *least) {
+static list too_long(const plan *p, const row rows[], size_t count,
+                     double shortest, double *least) {
     list names = {0};
     *least = INFINITY;
     for (size_t i = 0; i < count; i++) {
-        if (!rows[i].ran || !(rows[i].dt > shortest))
+        if (!rows[i].ran || !(rows[i].dt > shortest) ||
+            own_steps_see(p, &rows[i]))
             continue;
         *least = fmin(*least, rows[i].dt);
         if (!list_has(&names, rows[i].integrator))
@@ -107,7 +114,7 @@ void time_words(const plan *p, const row rows[], size_t count, list *words) {
     const char *effect = "";
     double at = 0, least,
            shortest = nevh_timing_shortest(p->timing, &at, &effect);
-    list names = too_long(rows, count, 2 * shortest, &least);
+    list names = too_long(p, rows, count, 2 * shortest, &least);
     if (names.count)
         list_print(words,
                    "%s changes within %.2g%s near t = %.6g%s: steps of "
