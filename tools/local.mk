@@ -147,6 +147,8 @@ tools_nevh_SOURCES = \
 	tools/orbit/columns.h \
 	tools/orbit/columns.c \
 	tools/orbit/orbit.h \
+	tools/orbit/lost_digits.c \
+	tools/orbit/lost_digits.h \
 	tools/orbit/orbit.c \
 	tools/plot/plot_words.c \
 	tools/orbit/run_plot_private.h \

@@ -373,6 +373,33 @@ for run in "pendulum --integrators gauss8 --dt 0.001 --t-end 100 --at 0.5,1,99" 
     exits 0 run $run --resume $work/x.csv
 done
 
+# Where the state outgrows the steps of differences, the run ends before digits are
+# lost; steps that are too long for the orbit are another thing.
+printf '[coordinates]\nx = 1\n[effects]\nH = p_x^2/2 - x^2/2\n[run]\nt_end = 40\n%s' \
+    'dt = 0.1' >$work/growth.nevh
+# right LEAST MOST: x of all rows is cosh t; how many there are.
+right() {
+    rows $work/out | awk -F, -v least=$1 -v most=$2 '
+        function abs(x) { return x < 0 ? -x : x }
+        { x = (exp($1) + exp(-$1)) / 2 }
+        abs($2 - x) > 1e-6 * x { exit 1 }
+        END { exit NR < least || NR > most }' ||
+        { fails "has wrong digits, or $1 to $2 rows"; tail -2 $work/out; }
+}
+growth="$work/growth.nevh --integrators gauss8"
+for gradient in central2 central4 central6; do
+    exits 1 run $growth --gradient $gradient
+    says 'rounding is more than 1e-6 of the gradient'
+    right 150 260
+done
+exits 1 run $growth --samples 41
+right 20 26
+exits 0 run $growth --gradient exact
+right 401 401
+sed 's/- x/+ x/; s/0\.1/2.5/' $work/growth.nevh >$work/unstable.nevh
+exits 0 run $work/unstable.nevh --integrators verlet
+says 'too long for verlet'
+
 # A compiler that was started in the background holds no file of a run that ends.
 printf '#!/bin/sh\nsleep 9\n' >$work/slow-cc
 chmod +x $work/slow-cc

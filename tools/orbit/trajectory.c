@@ -1,6 +1,7 @@
 /* nevh: an orbit, and its rows.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "trajectory.h"
+#include "lost_digits.h"
 #include "warnings.h"
 #include "experiment/conserved.h"
 #include <float.h>
@@ -34,6 +35,8 @@ struct trajectory {
     double *observed, *more;
     size_t observables;
     double energy, changed; /* of the first row; by how much others differ */
+    lost_digits digits;
+    bool lost;
     double first[2],
         most[2]; /* largest coordinate and momentum: then, of all rows */
     nevh_observer observer[MOST_OBSERVERS];
@@ -281,6 +284,10 @@ static bool is_before(const trajectory *r, double a, double b) {
 
 static bool show_row(trajectory *r, double t, const double q[],
                      const double p[]) {
+    r->lost = digits_are_lost(&r->digits, r->plan,
+                              nevh_stepper_field(r->stepper), t, q, p);
+    if (r->lost)
+        return true;
     r->status = show(r, t, q, p);
     return r->status || (r->finished && t != r->plan->t_end);
 }
@@ -449,6 +456,8 @@ int trajectory_follow(trajectory *r, const trajectory_watch *watch) {
         fputs("\r\033[K", stderr);
     if (r->status)
         return r->status;
+    if (r->lost)
+        return failed(r, r->now.at.written, digits_lost_why);
     if (status && status != NEVH_STOPPED)
         return failed(r, r->now.at.t, nevh_stepper_message(r->stepper));
     r->finished |= !status;
