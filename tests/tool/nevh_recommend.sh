@@ -134,6 +134,14 @@ has '^It keeps that in a run three times as long, too, until t = 60\.'
 has '^ cheapest +gauss8 +exact .* > 60 '
 has '^That is [0-9.]+ steps in 1\.59, the shortest period'
 lacks 'Warning'
+# Differences across a kink are no rates of the orbit.
+printf '[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = sqrt((x-0.1)^2)\n%s' \
+    '[run]
+t_end = 20
+dt = 0.01' >$work/kink.nevh
+exits 0 recommend $work/kink.nevh --energy-error 1e-4
+has '^Take '
+lacks 'the shortest period'
 # State errors of the longer run are against a reference that is as long.
 # The step is given: times decide between those that keep the error.
 exits 0 recommend kepler --state-error 1e-3 --t-end 20 --gradient exact \

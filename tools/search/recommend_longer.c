@@ -62,9 +62,13 @@ static plan longer_plan(recommendation *a) {
     return longer;
 }
 
+/* Differences across a kink give rates that no motion has. */
 static void find_period(recommendation *a) {
-    trial_run f = trial_run_new(&a->search.plan, false);
-    a->period = f.frequency > 0 ? 2 * acos(-1) / f.frequency : NAN;
+    char *why = NULL;
+    const plan *p = &a->search.plan;
+    trial_run f = trial_run_new(p, false);
+    bool kinked = smoothness_on_way(p, &why) == SMOOTHNESS_NONE;
+    a->period = f.frequency > 0 && !kinked ? 2 * acos(-1) / f.frequency : NAN;
     a->period_at = f.frequency_at;
 }
 
