@@ -7,8 +7,8 @@
    INTERRUPT_PWRITE=k  the same of the k-th write to a place in a file ...
    INTERRUPT_FULL=k    from the k-th of these on the disk is full
    INTERRUPT_SIGNAL=n  ... this signal comes.
-   INTERRUPT_CLOCK=    each look at the monotonic clock takes 10 ms, and each
-                       at the time of computing 10 s
+   INTERRUPT_CLOCK=    each look at the monotonic clock takes 10 ms, or so many as
+                       it says, and each at the time of computing 10 s
    INTERRUPT_SIGN=F    file F is made when there is an interruption
 
    SPDX-License-Identifier: GPL-3.0-or-later */
@@ -125,8 +125,8 @@ int clock_gettime(clockid_t which, struct timespec *now) {
                                                             "clock_gettime");
     if (which != CLOCK_MONOTONIC || !getenv("INTERRUPT_CLOCK"))
         return real(which, now);
-    looks++;
-    *now = (struct timespec){looks / 100, looks % 100 * 10000000};
+    long step = asked("INTERRUPT_CLOCK"), ms = ++looks * (step ? step : 10);
+    *now = (struct timespec){ms / 1000, ms % 1000 * 1000000};
     return 0;
 }
 

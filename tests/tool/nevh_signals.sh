@@ -4,6 +4,7 @@
 # end harm nothing.
 
 . "${srcdir:-.}/tests/support/nevh_support.sh"
+. "$srcdir/tests/support/nevh_interrupt.sh"
 
 XDG_CACHE_HOME=$PWD/$work/cache
 TMPDIR=$PWD/$work/tmp
@@ -42,6 +43,56 @@ for name in TERM HUP XCPU USR1 USR2 ALRM PIPE VTALRM PROF ABRT; do
     test $? -gt 128 || fails "goes on after a signal"
     test "$(ls -A $work/folder)" = '' || fails "leaves $(ls -A $work/folder)"
     dies $SIGN
+done
+
+# One that never ends, and ignores signals, is ended with what it started: when it took
+# too long by a clock that looks move on by 10 s, and when a signal ends the command.
+cat >$work/bin/gnuplot <<'END_OF_GNUPLOT'
+#!/bin/sh
+test "$1" != "$PASSES" || exit 0
+trap '' TERM
+echo $$ >"$SIGN"
+sleep 1000 &
+echo $! >"$SIGN.child"
+wait
+sleep 1000
+END_OF_GNUPLOT
+for name in clock-version clock TERM; do
+    PASSES=--version
+    test $name != clock-version || PASSES=
+    SIGN=$PWD/$work/sign
+    rm -f $SIGN $SIGN.child
+    command="run --plot (gnuplot without an end, $name)"
+    test $name = TERM || can_stop || { echo "clocks were not tested: $why"; continue; }
+    (
+        PATH=$PWD/$work/bin:$PATH
+        export SIGN PATH PASSES
+        test $name = TERM || {
+            INTERRUPT_CLOCK=10000
+            LD_PRELOAD=$PWD/$work/interrupt.so
+            ASAN_OPTIONS=$ASAN_OPTIONS:verify_asan_link_order=0
+            export INTERRUPT_CLOCK LD_PRELOAD ASAN_OPTIONS
+        }
+        exec $limit "$nevh" run pendulum --t-end 5 --native never \
+            --plot $work/folder/p.png
+    ) >/dev/null 2>$work/err </dev/null &
+    process=$!
+    test $name != TERM || {
+        until test -s $SIGN.child; do sleep 0.05; done
+        kill -s TERM $process
+    }
+    wait $process 2>/dev/null
+    code=$?
+    if test $name = TERM; then
+        test $code = 143 || fails "exit status $code"
+    else
+        test $code = 2 || fails "exit status $code"
+        says 'gnuplot .* 120 s'
+    fi
+    test "$(ls -A $work/folder)" = '' || fails "leaves $(ls -A $work/folder)"
+    for file in $SIGN $SIGN.child; do
+        test ! -s $file || dies $file
+    done
 done
 
 # A compiler at work, too.

@@ -28,7 +28,7 @@ static void allow_as_usual(int file, const char *replaced) {
 enum { MOST_OPEN = 8 };
 static const char *volatile unfinished[MOST_OPEN];
 static void (*volatile leave)(int);
-static volatile pid_t child; /* 0: none is at work */
+static volatile pid_t child; /* and its group; 0: none is at work */
 
 static void remember(const char *forgotten, const char *name) {
     for (int i = 0; i < MOST_OPEN; i++)
@@ -43,7 +43,7 @@ static void remove_all(int number) {
         if (unfinished[i])
             unlink(unfinished[i]);
     if (child > 0)
-        kill(child, SIGTERM);
+        kill(-child, SIGKILL);
     if (leave)
         leave(number);
 }

@@ -371,7 +371,7 @@ void signal_end(int number);
 /* Calls `leave` where the program ends before it is taken back by NULL: with the
    number of the signal, or with 0 where memory is out.  It may call only what
    handlers of signals may. */
-/* A child that is to end with this program; 0: it has ended. */
+/* A child that is to end with this program, and all of its group; 0: it has ended. */
 void output_child(pid_t);
 bool file_is_regular(int file);
 /* A file to read, or NULL where it is none: a pipe or a device may have no end. */

@@ -9,6 +9,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 extern char **environ;
@@ -27,7 +28,9 @@ static int spawn(char *const arguments[], int in, int out, int messages,
     return wrong;
 }
 
-/* A signal waits until the child is one that ends with this program. */
+/* In a group of its own, which ends with it.  A signal waits until the child is one
+   that ends with this program, which is told of the child's end whatever its caller
+   ignores. */
 static int start(char *const arguments[], int in, int out, int messages,
                  pid_t *child) {
     posix_spawnattr_t how;
@@ -38,7 +41,10 @@ static int start(char *const arguments[], int in, int out, int messages,
     sigfillset(&all);
     sigprocmask(SIG_BLOCK, &all, &before);
     posix_spawnattr_setsigmask(&how, &before);
-    posix_spawnattr_setflags(&how, POSIX_SPAWN_SETSIGMASK);
+    posix_spawnattr_setpgroup(&how, 0);
+    posix_spawnattr_setflags(&how,
+                             POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
+    signal(SIGCHLD, SIG_DFL);
     wrong = spawn(arguments, in, out, messages, &how, child);
     if (!wrong)
         output_child(*child);
@@ -47,11 +53,23 @@ static int start(char *const arguments[], int in, int out, int messages,
     return wrong;
 }
 
+/* Seconds: fonts that are used for the first time take some. */
+enum { LONGEST_DRAWING = 120, LOOKS_APART = 5 /* milliseconds */ };
+enum { TOO_LONG = -1 };
+
+/* returns  its status, or TOO_LONG: it was ended with its group */
 static int await(pid_t child) {
+    const struct timespec pause = {.tv_nsec = LOOKS_APART * 1000000L};
+    double begun = wall_seconds();
     int status = 0;
-    while (waitpid(child, &status, 0) < 0)
-        if (errno != EINTR)
-            return -1;
+    while (waitpid(child, &status, WNOHANG) == 0) {
+        if (wall_seconds() - begun > LONGEST_DRAWING) {
+            kill(-child, SIGKILL);
+            waitpid(child, &status, 0);
+            return TOO_LONG;
+        }
+        nanosleep(&pause, NULL);
+    }
     return status;
 }
 
@@ -74,6 +92,11 @@ static void read_message(FILE *messages, char text[], size_t size) {
 
 static int refuse_end(int status, FILE *messages) {
     char text[400], *how;
+    if (status == TOO_LONG)
+        return tool_refuse("gnuplot took longer than %d s and was ended: does "
+                           "gnuplot --version end?  Pictures in files .svg do "
+                           "not need it",
+                           LONGEST_DRAWING);
     read_message(messages, text, sizeof text);
     if (WIFSIGNALED(status))
         how = text_print("signal %d", WTERMSIG(status));
