@@ -35,6 +35,15 @@ static const char *message_shown(const char *at) {
     return control || broken || code == 0x7F ? "?" : at;
 }
 
+/* returns  where the text goes on after so many characters */
+static const char *append_shown(buffer *b, const char *at, const char *end,
+                                size_t most) {
+    for (; most > 0 && at < end; most--, at += message_step(at))
+        message_append(b, message_shown(at),
+                       *message_shown(at) == '?' ? 1 : message_step(at));
+    return at;
+}
+
 /* Below the characters from `at` to before `last`: a caret below number `place`,
    and marks below the rest of `length`. */
 static void append_marks(buffer *b, const char *at, const char *last,
@@ -59,9 +68,8 @@ static void append_line(buffer *b, const nevh__line *line, size_t column,
     const char *from = at;
     message_append(b, "\n", 1);
     message_append(b, "...", skip ? 3 : 0);
-    for (size_t k = 0; k < SHOWN && at < end; k++, at += message_step(at))
-        message_append(b, message_shown(at),
-                       *message_shown(at) == '?' ? 1 : message_step(at));
+    at = append_shown(b, at, end, SHOWN);
+    message_append(b, "...", at < end ? 3 : 0);
     message_append(b, "\n", 1);
     message_append(b, "   ", skip ? 3 : 0);
     append_marks(b, from, at, column > here ? column - here : 0, length);
@@ -76,12 +84,10 @@ bool nevh__scene_fail_at(nevh_scene *s, int status, const nevh__line *line,
     char place[64];
     snprintf(place, sizeof place,
              ":%zu:%zu: error: ", line->number ? line->number : 1, column);
-    size_t left = strlen(s->name);
-    message_append(&b, line->number ? s->name : "assignment",
-                   line->number ? (left < TEXT ? left : TEXT)
-                                : strlen("assignment"));
+    const char *name = line->number ? s->name : "assignment";
+    append_shown(&b, name, name + strlen(name), TEXT);
     message_append(&b, place, strlen(place));
-    message_append(&b, text, strlen(text));
+    append_shown(&b, text, text + strlen(text), TEXT);
     append_line(&b, line, column, length);
     return false;
 }

@@ -161,18 +161,32 @@ TEST(carriage_returns_are_not_shown) {
     nevh_scene_free(s);
 }
 
-/* Long lines are shown around the column. */
-TEST(caret_in_a_long_line) {
-    char text[3000] = "[parameters]\nm = 0";
-    for (int i = 0; i < 400; i++)
+/* Long lines are shown around the column, with dots where they go on. */
+TEST_EACH(caret_in_a_long_line, 3) {
+    static const int before[] = {400, 400, 2}, after[] = {0, 400, 400};
+    char text[6000] = "[parameters]\nm = 0", place[20];
+    for (int i = 0; i < before[_i]; i++)
         strcat(text, " + 1");
-    strcat(text, " + zz\n");
+    strcat(text, " + zz");
+    for (int i = 0; i < after[_i]; i++)
+        strcat(text, " + 1");
     nevh_scene *s = nevh_scene_parse("f", text);
     const char *line = strchr(nevh_scene_message(s), '\n') + 1;
     const char *caret = strchr(line, '\n') + 1;
-    ck_assert(!strncmp(nevh_scene_message(s), "f:2:1609: ", 10));
+    snprintf(place, sizeof place, "f:2:%d: ", 4 * before[_i] + 9);
+    ck_assert(!strncmp(nevh_scene_message(s), place, strlen(place)));
     ck_assert(strchr(caret, '^') - caret == strstr(line, "zz") - line);
     ck_assert_uint_lt(strlen(line), 300);
+    ck_assert_int_eq(!strncmp(line, "...", 3), before[_i] > 2);
+    ck_assert_int_eq(!strncmp(caret - 4, "...", 3), after[_i] > 2);
+    nevh_scene_free(s);
+}
+
+TEST(control_characters_are_not_shown) {
+    nevh_scene *s = nevh_scene_parse("f\033\n", "[sec\033tion\177]\n");
+    for (const char *at = nevh_scene_message(s); *at; at++)
+        ck_assert(*at == '\n' || (*at >= ' ' && *at < 0x7F));
+    ck_assert(!strncmp(nevh_scene_message(s), "f\?\?:1:", 6));
     nevh_scene_free(s);
 }
 

@@ -218,6 +218,17 @@ cp $work/my.nevh "$lines"
 exits 0 run "$lines" --t-end 0.2
 test "$(grep -vc '^#' $work/out)" = 4 || { fails "has other rows"; cat $work/out; }
 
+# Messages about words as long as files are short, and do not control the terminal.
+long=$(awk 'BEGIN { for (i = 0; i < 12000; i++) printf("phi^2/2+") }')
+for word in $long "$(printf 'a\033[2Jb')"; do
+    for arguments in "$word" "run $word" "run pendulum --$word" "new none/$word" \
+        "run pendulum --samples $word" "run pendulum -o none/$word" "list $word"; do
+        exits 2 $arguments
+        test $(wc -c <$work/err) -lt 1100 || fails "says $(wc -c <$work/err) bytes"
+        test $(tr -d '\n[:print:]' <$work/err | wc -c) = 0 || fails "controls the terminal"
+    done
+done
+
 # What a spreadsheet would compute is a text, and a number stays one.
 mkdir $work/formulas
 for name in '=1+1' '+1+1' '-1+1' '@SUM(1)' '=cmd,"x"'; do

@@ -136,14 +136,42 @@ const char *list_closest(const list *l, const char *name) {
     return closest;
 }
 
+/* Puts question marks for characters that would control a terminal. */
+static void make_safe(char *text) {
+    for (; *text; text++)
+        if (((unsigned char)*text < ' ' && !strchr("\n\t", *text)) ||
+            *text == 0x7F)
+            *text = '?';
+}
+
+static bool continues(char byte) { /* a character of UTF-8 */
+    return ((unsigned char)byte & 0xC0) == 0x80;
+}
+
+/* Takes the middle out of what is long: a file may be given where a name is meant. */
+static void shorten(char *text) {
+    enum { LONGEST = 1000, PART = 450 };
+    size_t length = strlen(text), first = PART, last = length - PART;
+    if (length <= LONGEST)
+        return;
+    while (first > 0 && continues(text[first]))
+        first--;
+    while (continues(text[last]))
+        last++;
+    memcpy(text + first, "...", 3);
+    memmove(text + first + 3, text + last, length - last + 1);
+}
+
 int tool_refuse(const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    fflush(stdout);
-    fputs("nevh: ", stderr);
-    vfprintf(stderr, format, arguments);
-    fputc('\n', stderr);
+    char *text = print(format, arguments);
     va_end(arguments);
+    fflush(stdout);
+    make_safe(text);
+    shorten(text);
+    fprintf(stderr, "nevh: %s\n", text);
+    tool_release(text);
     return TOOL_USAGE;
 }
 
