@@ -130,6 +130,24 @@ def list_in_words(rows):
         "  nevh mark answers.csv --for names.txt --key 7        right, wrong, and why", ""])
 
 
+def say(words):
+    """A message of a command, whoever listens: short, and without characters that control a
+    terminal, as tools/cli/words.c has them."""
+    most, part = 1000, 450
+    if len(words) > most:
+        words = words[:part] + "..." + words[-part:]
+    words = re.sub(r"[\x00-\x08\x0b-\x1f\x7f]", "?", words)
+    with contextlib.suppress(OSError):
+        sys.stderr.write("nevh: %s\n" % words)
+        sys.stderr.flush()
+
+
+def refuse(words):
+    """Says it; the exit status."""
+    say(words)
+    return 2
+
+
 def told(things, what="sheet"):
     """Things one by one, with the progress."""
     with Progress(what) as progress:
@@ -292,8 +310,7 @@ def mark_rows(room, given):
         rows.append([name, task, said, *verdict])
         one = right.setdefault(spelt.setdefault(plain(name), name), {})
         if task in one:
-            sys.stderr.write("nevh: line %d: %s answers %s again; the last answer counts\n" % (
-                line, name, task))
+            say("line %d: %s answers %s again; the last answer counts" % (line, name, task))
         one[task] = verdict[0] == "right"
     doubt_key(given.key, [row[3] for row in rows[1:] if row[3] != "missing"])
     return rows, right
@@ -303,7 +320,7 @@ def doubt_key(key, verdicts):
     """Asks whether the key is that of the sheets, where few of all answers are right."""
     right = verdicts.count("right")
     if len(verdicts) >= 4 and 4*right < len(verdicts):
-        sys.stderr.write("nevh: %d of %d answers %s right; %s\n" % (
+        say("%d of %d answers %s right; %s" % (
             right, len(verdicts), "is" if right == 1 else "are",
             "is --key %s that of the sheets?" % key if key else
             "if the sheets were made with --key, mark needs the same --key"))
@@ -380,24 +397,28 @@ def main(arguments):
         made = run(given)
         if is_file(given):
             write(given.output, made)
-            if given.format == "json":
-                sys.stdout.write(as_json([["file"], [given.output]]))
-        else:
-            sys.stdout.write(made)
+            made = as_json([["file"], [given.output]]) if given.format == "json" else ""
+        sys.stdout.write(made)
+        sys.stdout.flush()
     except OSError as error:
-        sys.stderr.write("nevh: %s: %s\n" % (error.filename or "the output cannot be written",
-                                             error.strerror))
-        return 2
+        return refuse("%s: %s" % (error.filename or "the output cannot be written",
+                                  error.strerror))
     except UnicodeDecodeError:
-        sys.stderr.write("nevh: a file that was given is no text in UTF-8\n")
-        return 2
+        return refuse("a file that was given is no text in UTF-8")
     except Error as error:
-        sys.stderr.write("nevh: %s\n" % error)
-        return 2
+        return refuse(str(error))
     except KeyboardInterrupt:
         return 130
     return 0
 
 
+def leave(status):
+    """Ends the program: what could not be written is not tried again, with another status."""
+    for file in (sys.stdout, sys.stderr):
+        with contextlib.suppress(OSError):
+            file.flush()
+    os._exit(status)
+
+
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    leave(main(sys.argv[1:]))

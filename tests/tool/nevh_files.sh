@@ -189,6 +189,19 @@ if test -c /dev/full; then
         says 'cannot be written'
     done
 fi
+# Nobody reads: the status is that of an output that cannot be written, without messages,
+# too, and messages alone are no output.
+for command in 'run pendulum --t-end 1' 'compare pendulum --t-end 1 --dt 0.1' \
+    'list scenes' sheet "sheet 1 -o $work/closed --format json"; do
+    case $command in sheet*) "$nevh" sheet >/dev/null 2>&1 || continue ;; esac # Python
+    "$nevh" $command >&- 2>&-
+    test $? = 2 || fails "does not mind that all is closed"
+    "$nevh" $command >&-
+    test $? = 2 || fails "does not mind that its output is closed"
+    "$nevh" $command 2>&- >/dev/null || fails "minds that messages are closed"
+    test ! -c /dev/full || "$nevh" $command >/dev/full 2>/dev/full
+    test $? = 2 || test ! -c /dev/full || fails "does not mind a full disk"
+done 2>/dev/null
 (
     ulimit -f 1 # of 512 or 1024 bytes
     "$nevh" compare $work/my.nevh --t-end 20 --format csv --dt 0.1,0.2,0.3,0.4 \
