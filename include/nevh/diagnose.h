@@ -186,7 +186,7 @@ NEVH_API nevh_verdict nevh_energy_verdict(const nevh_energy_report *,
 /* True if the errors come from steps that pass over changes of H in time, not from
    the scheme; false for NULL.  Thread-safe. */
 NEVH_API bool nevh_energy_passes_over(const nevh_energy_report *);
-/* True if the error, above 3 % of the limit where theory KEEPS it, never comes back and
+/* True if the error, above 10 % of the limit where theory KEEPS it, never comes back and
    is the same number, to 1 %, throughout the last fifth, as after a collision: the
    verdict is not BOUNDED, for nothing tells what a second one would add.  False for
    NULL.  Thread-safe. */

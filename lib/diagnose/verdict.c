@@ -86,11 +86,15 @@ static bool adds_up(const nevh_energy_report *r) {
     return r->theory == NEVH_THEORY_OPEN && r->grown <= some && is_line(r);
 }
 
-/* An error that large comes back where the orbit is still of use: among those of the end
-   there are small ones.  One that stays where an encounter left it does not. */
+/* Errors that are small where a motion has met its limit. */
+static const double small_share = 0.1;
+
+/* An error that large comes back where the orbit is still of use: those of the end are
+   small, or there are small ones among them.  One that stays where an encounter left
+   it does not. */
 static bool comes_back(const nevh_energy_report *r) {
-    double end = fmax(r->last_fifth, coarse * r->limit);
-    return r->least <= lasting * fmin(end, r->max);
+    return r->last_fifth <= small_share * r->limit ||
+           r->least <= lasting * fmin(r->last_fifth, r->max);
 }
 
 static nevh_verdict judge_large(const nevh_energy_report *r, double times) {
@@ -158,9 +162,9 @@ static double needed(const nevh_energy_report *r, double times) {
    nothing of what a second one would do. */
 bool nevh_energy_stays(const nevh_energy_report *r) {
     static const double alike = 0.99;
-    return r && r->theory == NEVH_THEORY_KEEPS && r->max > coarse * r->limit &&
-           r->max > r->rounding && r->least > lasting * r->max &&
-           r->least > alike * r->last_fifth;
+    return r && r->theory == NEVH_THEORY_KEEPS &&
+           r->max > small_share * r->limit && r->max > r->rounding &&
+           r->least > lasting * r->max && r->least > alike * r->last_fifth;
 }
 
 static nevh_verdict judge_kept(const nevh_energy_report *r, double times) {
