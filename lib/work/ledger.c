@@ -16,6 +16,7 @@
 #include <string.h>
 
 static const double incomplete = 1e-9; /* of a step, not accounted for */
+enum { MOST_SEEN = 1 << 12 };
 
 struct nevh_ledger {
     nevh_field *field;
@@ -26,7 +27,7 @@ struct nevh_ledger {
     double *pending, *roundoff; /* width each: of the step under way */
     double kicked, drifted;     /* parts of it that the kernel told */
     double *seen;               /* times of the step at which dH/dt was taken */
-    size_t n_seen, room;
+    size_t n_seen;
     bool driven, mixed, by_kernel; /* reads t; so does a term of q and p; the
                                       kernel has something to tell */
     bool watches;                  /* the scheme's own steps, by `seen` */
@@ -47,8 +48,9 @@ static int ledger_allocate(nevh_work *w, struct nevh_ledger *l) {
     l->q = nevh__array(size, sizeof(double));
     l->p = nevh__array(size, sizeof(double));
     l->steps = nevh__array(w->system->n_terms, sizeof *l->steps);
+    l->seen = nevh__array(l->watches ? MOST_SEEN : 1, sizeof(double));
     bool all = l->t && l->rate && l->h && l->pending && l->roundoff &&
-               l->slope && l->q && l->p && l->steps;
+               l->slope && l->q && l->p && l->steps && l->seen;
     return all ? NEVH_OK : ledger_out_of_memory(w);
 }
 
@@ -192,18 +194,15 @@ static int ledger_add_friction(nevh_work *w, const double t[], const double q[],
     return status;
 }
 
-static int see(nevh_work *w, double t) {
-    struct nevh_ledger *l = w->ledger;
-    if (l->n_seen == l->room) {
-        size_t room = 2 * l->room + 64;
-        double *more = realloc(l->seen, room * sizeof *more);
-        if (!more)
-            return ledger_out_of_memory(w);
-        l->seen = more;
-        l->room = room;
+/* Keeps every other one where there are too many: what lies between is then seen less
+   well than it was. */
+static void see(struct nevh_ledger *l, double t) {
+    if (l->n_seen == MOST_SEEN) {
+        l->n_seen /= 2;
+        for (size_t i = 0; i < l->n_seen; i++)
+            l->seen[i] = l->seen[2 * i];
     }
     l->seen[l->n_seen++] = t;
-    return NEVH_OK;
 }
 
 static int compare_times(const void *a, const void *b) {
@@ -232,8 +231,8 @@ int nevh__ledger_account(nevh_work *w, unsigned parts, double weight,
     if (!l || !l->by_kernel || weight == 0)
         return NEVH_OK;
     int status = NEVH_OK;
-    if (l->watches && see(w, *t))
-        return NEVH_ENOMEM;
+    if (l->watches)
+        see(l, *t);
     l->kicked += parts & NEVH_OF_Q ? weight : 0;
     l->drifted += parts & NEVH_OF_P ? weight : 0;
     for (size_t lane = 0; lane < w->width; lane++)
