@@ -109,14 +109,16 @@ static void fill_chain(chain *c) {
                             NULL,
                             NULL,
                             NULL,
-                            false};
+                            false,
+                            NULL};
     c->mass = (nevh_term){"masses",      NULL, 0,    1,     1,    NULL,
                           c->masses,     c->m, N,    false, mass, NULL,
-                          mass_gradient, NULL, NULL, NULL,  NULL, false};
-    c->shaking =
-        (nevh_term){"shaking",        NULL, 1,    1,    0,       c->shaken,
-                    c->shaken,        NULL, 1,    true, shaking, NULL,
-                    shaking_gradient, NULL, NULL, NULL, NULL,    false};
+                          mass_gradient, NULL, NULL, NULL,  NULL, false,
+                          NULL};
+    c->shaking = (nevh_term){
+        "shaking", NULL, 1,    1,       0,    c->shaken,        c->shaken,
+        NULL,      1,    true, shaking, NULL, shaking_gradient, NULL,
+        NULL,      NULL, NULL, false,   NULL};
 }
 
 static nevh_system *system_of(const nevh_term terms[], size_t count) {

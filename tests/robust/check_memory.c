@@ -48,9 +48,9 @@ static const size_t both[] = {0, 1};
 static const double masses[] = {0.7, 0.3};
 static const nevh_term terms[] = {
     {"kinetic", "T", 0, 1, 1, NULL, both, masses, 2, false, kinetic, NULL,
-     kinetic_gradient, NULL, NULL, NULL, NULL, false},
+     kinetic_gradient, NULL, NULL, NULL, NULL, false, NULL},
     {"potential", NULL, 2, 0, 0, NULL, NULL, NULL, 1, false, cosine, NULL,
-     cosine_gradient, NULL, NULL, NULL, NULL, false}};
+     cosine_gradient, NULL, NULL, NULL, NULL, false, NULL}};
 
 static nevh_system *pendulums(void) {
     nevh_system *s = nevh_system_new(2);
